@@ -172,7 +172,9 @@ def test_a_file_that_is_cut_off_is_left_out(
     assert stream_of(listener) == [FILES[1]]
 
 
-@pytest.mark.parametrize("file", [FILES[0][:-2], b"\xff\xd8 and nothing more \xff\xd9"])
+@pytest.mark.parametrize(
+    "file", [FILES[0][:-2], b"\xff\xd8 and nothing more \xff\xd9"], ids=["cut off", "empty"]
+)
 def test_a_camera_of_damaged_files_alone_fails(file: bytes, start: Callable[..., VisionNode]) -> None:
     node = start(JpegDevice([file]))
     node.process_picture()
