@@ -77,6 +77,9 @@ def test_a_gamepad_is_tried_and_assigned_by_the_keyboard(shown: Page, site: Dive
     expect(page.get_by_role("button", name="Vertical, Stick: none. Assign")).to_be_visible()
     expect(forwards).to_have_text("+1.00")
     dead = page.get_by_role("slider", name="Forwards: Dead zone")
+    if page.viewport_size != DESKTOP:
+        expect(dead).to_be_hidden()
+        motion(page, "Forwards").get_by_text("Dead zone and curve").click()
     dead.focus()
     for _ in range(5):
         page.keyboard.press("ArrowRight")

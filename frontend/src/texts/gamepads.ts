@@ -61,6 +61,7 @@ export const gamepads = {
   assignOf: (group: string, what: string, value: string) => `${group === what ? what : `${group}, ${what}`}: ${value}. Assign`,
   noStop: 'STOP has no button on this gamepad.',
   stick: 'Stick',
+  settings: 'Dead zone and curve',
   dead: 'Dead zone',
   curve: 'Curve',
   invert: 'Turn around',
