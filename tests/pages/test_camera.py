@@ -66,6 +66,7 @@ def test_a_picture_that_stops_is_said_with_its_reason(page: Page) -> None:
     page.get_by_role("link", name="Operate").click()
     camera = page.get_by_role("region", name="Camera")
     expect(camera.get_by_text(flown.camera_failure)).to_be_visible()
+    expect(camera.get_by_text("No picture")).to_have_count(1)
     for topic in ("picture", "camera"):
         flown.show(topic)
     expect(camera.get_by_role("alert")).to_have_text(
