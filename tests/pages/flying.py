@@ -48,7 +48,11 @@ class Flown:
 
     def show(self, topic: str = "picture") -> None:
         """Send a picture that is new."""
-        self._sockets[-1].send(water(SteadyClock().now(), topic).data)
+        self.send(water(SteadyClock().now(), topic))
+
+    def send(self, block: Block) -> None:
+        """Send a block that the robot does not."""
+        self._sockets[-1].send(block.data)
 
     def _hand_on(self, socket: WebSocketRoute) -> None:
         def change(message: str | bytes) -> None:

@@ -25,7 +25,7 @@ export const missionRun = {
   open: 'Open the session',
   track: {
     label: 'The way from above, by dead reckoning; the lines are 1 m apart',
-    way: (ahead: string, right: string, error: string) => `${ahead} m at 0°, ${right} m at 90°, ± ${error} m`,
+    way: (ahead: string, right: string, error: string) => `${ahead} m at 0°, ${right} m at 90°, ±\u00a0${error}\u00a0m`,
     estimate: 'estimate by dead reckoning, lines 1 m apart',
   },
   steps: 'Steps of the mission',
