@@ -1,4 +1,4 @@
-"""Whatever opens over a page, STOP stays whole and can be pressed."""
+"""STOP stays whole and can be pressed, whatever opens over a page."""
 
 import re
 
