@@ -4,7 +4,8 @@ import pytest
 from playwright.sync_api import Browser, StorageState, ViewportSize, expect
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.contract.documents import Mission, MissionPhase, MissionStepState, Track
+from robot_runtime.contract.documents import Mission, MissionStepState, Track
+from robot_runtime.contract.missions import MissionPhase
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, row
 from tests.browser.opening import DESKTOP, PHONE, opened_page

@@ -24,7 +24,7 @@ ALARMS = [{"fault": f"fault_{number}"} for number in range(8)]
 
 def whole(page: Page) -> bool:
     """Return whether nothing lies over any part of STOP."""
-    return page.evaluate(COVERED) == []
+    return bool(page.evaluate(COVERED) == [])
 
 
 @pytest.mark.parametrize("size", SIZES.values(), ids=SIZES)
