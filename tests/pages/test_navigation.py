@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, expect
 
-from tests.browser.opening import PHONE, opened_page
+from tests.browser.opening import PHONE
 from tests.browser.pages import PAGES, fill, show
 from tests.browser.site import Site
 
@@ -13,14 +13,6 @@ TABS = {
     "parameters": "Parameters",
     "vision": "Vision",
 }
-
-# Where the words of an element begin, px from the left, and how high they are.
-WORDS = """(element) => {
-    const range = document.createRange();
-    range.selectNodeContents(element);
-    const { left, height } = range.getBoundingClientRect();
-    return [left, height];
-}"""
 
 
 def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, site: Site) -> None:
@@ -88,18 +80,3 @@ def test_the_current_tab_of_tune_is_in_view_on_a_phone(
     expect(tabs.get_by_role("link", name="Step response")).to_be_in_viewport(ratio=1)
     page.wait_for_function("(one) => getComputedStyle(one).maskImage === 'none'", arg=tabs.element_handle())
     context.close()
-
-
-def test_the_names_of_the_pages_stand_on_one_line_on_a_phone(
-    browser: Browser, site: Site, cookies: StorageState
-) -> None:
-    with opened_page(browser, site, cookies, PHONE) as page:
-        tabs = page.get_by_role("navigation", name="Pages")
-        for name in ("Operate", "Comm tests", "System"):
-            tab = tabs.get_by_role("link", name=name)
-            tab.click()
-            expect(tab).to_have_attribute("aria-current", "page")
-            expect(tab).to_be_in_viewport(ratio=1)
-            left, height = tab.evaluate(WORDS)
-            assert left >= 8, f"{name} touches the edge"
-            assert height < 24, f"{name} has two lines"
