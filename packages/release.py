@@ -24,7 +24,7 @@ PLATFORMS = ("manylinux_2_34", "manylinux_2_28", "manylinux_2_17", "manylinux201
 MACHINES = ("x86_64", "aarch64")
 SMALL_MACHINES = ("armv6l", "armv7l", "i686")
 """With 32 bits."""
-EXTRAS = ("pi", "mqtt", "parquet", "identify", "ros2")
+EXTRAS = ("pi", "film", "mqtt", "parquet", "identify", "ros2")
 """What an installed robot has besides, with 64 bits; with 32 only `mqtt` has wheels."""
 PURE: tuple[str, ...] = ("cobs",)
 """Packages without wheels for every computer, which are plain Python where there is no C compiler."""

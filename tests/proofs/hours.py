@@ -109,6 +109,9 @@ class Checksums:
             elif kind is Kind.PICTURE:
                 for taken, jpeg in recording.pictures(name):
                     sums.add(name, 1, TIME.pack(taken) + jpeg)
+            elif kind is Kind.FILM:
+                for taken, picture in recording.film():
+                    sums.add(name, 1, TIME.pack(taken) + picture)
             else:
                 for rows in recording.rows(name):
                     sums.add(name, len(rows) // described["row_bytes"], rows)

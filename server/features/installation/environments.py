@@ -16,6 +16,7 @@ BUILD_SECONDS = 3600.0
 """A Raspberry Pi Zero unpacks some 300 MB on a slow card."""
 EXTRAS = (
     ("pi", "gpiod"),
+    ("film", "av"),
     ("scene", "mujoco"),
     ("mqtt", "paho-mqtt"),
     ("parquet", "pyarrow"),
