@@ -32,7 +32,7 @@ _STAYS = """async (one) => {
     for (let frame = 0; frame < 3; frame += 1) await new Promise((done) => requestAnimationFrame(done));
     return place() === before && one?.matches(':hover');
 }"""
-"""Whether the pointer is on a button that does not slide away from it, as in a drawer that opens."""
+"""JavaScript that tells of a button whether it stands still, and the pointer is on it: drawers slide in."""
 
 
 class Firefox:

@@ -2,14 +2,13 @@
 
 from typing import Annotated
 
-from fastapi import Depends, Query
+from fastapi import Query
 from fastapi.responses import Response
 
-from server.http.dependencies import Provided
 from server.http.heavy_requests import RecordingTurn, TooManyHeavyError
-from server.http.operations import Identifier, Operations
+from server.http.operations import Operations
 from server.http.sign_in.policy import Need
-from server.library.content import Recording, reading_content
+from server.library.content import reading_content
 from server.library.film import (
     PART_SECONDS_MAX,
     CodecMissingError,
@@ -18,20 +17,14 @@ from server.library.film import (
     describe_film,
     film_part,
 )
-from server.platform.store import Store
-from server.recording.session import UnknownSessionError, find_row
+from server.library.opening import Moment, OpenRecording
+from server.recording.session import UnknownSessionError
 
-SECONDS_MAX = 1e9
 FILM_START = "Film-Start"
 
 router = Operations(prefix="/api", tags=["sessions"])
 
 
-def _open(store: Provided[Store], session: Identifier) -> Recording:
-    return Recording(store, find_row(store, session))
-
-
-OpenRecording = Annotated[Recording, Depends(_open)]
 _REFUSALS = (UnknownSessionError, NoFilmError, CodecMissingError, TooManyHeavyError)
 
 
@@ -46,9 +39,7 @@ def get_film(_: RecordingTurn, recording: OpenRecording) -> FilmDescription:
 def get_film_part(
     _: RecordingTurn,
     recording: OpenRecording,
-    start: Annotated[
-        float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False, description="s since the start")
-    ],
+    start: Moment,
     seconds: Annotated[float, Query(gt=0, le=PART_SECONDS_MAX, allow_inf_nan=False)] = 10.0,
 ) -> Response:
     """Return a part of the film as a fragmented MP4 file, from the picture that is shown at `start` on.
