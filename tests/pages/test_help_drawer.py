@@ -18,6 +18,8 @@ def test_the_chapter_opens_beside_the_page(
 ) -> None:
     with opened_page(browser, site, cookies, size) as page:
         page.goto(f"{site.url}/#/sessions")
+        # It takes the focus when it appears.
+        expect(page.get_by_role("heading", name="Sessions", level=1)).to_be_visible()
         link = page.get_by_role("link", name="Help for this page")
         link.focus()
         page.keyboard.press("Enter")

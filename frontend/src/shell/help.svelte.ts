@@ -1,15 +1,20 @@
 import { createContext } from 'svelte';
 
-/** The drawer with a chapter of the help. While it is not loaded, the help opens in a tab. */
+/** The drawer with a chapter of the help. It comes after the page's first view; where it cannot, the help opens in a tab. */
 export class HelpDrawer {
   /** of the chapter; null while the drawer is closed */
   address = $state<string | null>(null);
-  loaded = false;
-  #opener: HTMLElement | null = null;
+  #missing = false;
+  #opener: Pick<HTMLElement, 'focus'> | null = null;
+
+  /** @param fetched null where the drawer could not be fetched */
+  constructor(fetched: Promise<object | null>) {
+    void fetched.then((found) => (this.#missing = found === null));
+  }
 
   /** Open a chapter, or close the drawer where it shows this one. Returns false where there is no drawer. */
-  toggle(address: string, opener: HTMLElement): boolean {
-    if (!this.loaded) return false;
+  toggle(address: string, opener: Pick<HTMLElement, 'focus'>): boolean {
+    if (this.#missing) return false;
     if (this.address === address) {
       this.close();
     } else {
