@@ -26,7 +26,7 @@ const LAYERS = [
   ['app'],
 ];
 /** Files beside the rooms' folders. */
-const FLOOR = ['api', 'attitude', 'files', 'flight', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
+const FLOOR = ['address', 'api', 'attitude', 'files', 'flight', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
 const APP = ['App', 'Root', 'lazyPages', 'main'];
 /** A single panel is reached through the registry (panels/registry.ts), and by the flight view, which shows parts of some. */
 const DOORS = { 'panels/*': ['panels', 'flight'] };

@@ -1,4 +1,5 @@
 import { createContext } from 'svelte';
+import { changedSeen, readSeen, writeSeen, type Seen } from './address';
 import { pages } from './texts/pages';
 
 /** The pages that have a tab. */
@@ -7,17 +8,31 @@ const ALL = [...PAGES, 'flight', 'gamepads', 'replay', 'people', 'bring-up'] as 
 
 export type PageName = (typeof ALL)[number] | 'unknown';
 
+/** ms from a change of what is seen until the address says so: browsers refuse many changes in a row */
+const WRITE_AFTER = 300;
+
 /** The page that the address names after its hash: Operate where it names none, `unknown` where there is no such page. */
 export class Router {
   current = $state<PageName>('operate');
   /** what the address names within the page: #/comm-tests/runs/3 is ['runs', '3'] */
   within = $state.raw<readonly string[]>([]);
+  /** what the address says of what is seen there: #/sessions/3?at=12.5 is at, '12.5'. Whoever reads it checks it. */
+  seen = $state.raw<Seen>(readSeen(''));
+  #path = '';
+  /** the address as it was read or written here last */
+  #known = '';
+  #writing: ReturnType<typeof setTimeout> | undefined;
 
   constructor() {
     const read = () => {
-      const [name = '', ...within] = location.hash.replace(/^#\/?/, '').split('/');
+      clearTimeout(this.#writing);
+      this.#known = location.hash;
+      const [path = '', seen = ''] = location.hash.replace(/^#\/?/, '').split(/\?(.*)/s);
+      this.#path = path;
+      const [name = '', ...within] = path.split('/');
       this.current = name === '' ? 'operate' : (ALL.find((page) => page === name) ?? 'unknown');
       this.within = within;
+      this.seen = readSeen(seen);
     };
     window.addEventListener('hashchange', read);
     read();
@@ -26,12 +41,56 @@ export class Router {
   get title(): string {
     return pages[this.current];
   }
+
+  /** the whole address of what is seen, to be given to others */
+  get address(): string {
+    return location.href.replace(/#.*/s, '') + this.#hash();
+  }
+
+  /**
+   * Put what is seen into the address. The names that are not given stay, and null takes one out.
+   *
+   * @param step true: "back" returns to what was seen before
+   */
+  show(changes: Readonly<Record<string, string | number | null>>, step = false): void {
+    const before = this.#hash();
+    this.seen = changedSeen(this.seen, changes);
+    if (this.#hash() === before) return;
+    clearTimeout(this.#writing);
+    if (!step) {
+      this.#writing = setTimeout(() => this.#write('replaceState', this.#hash()), WRITE_AFTER);
+      return;
+    }
+    // What was still to be written belongs to the step before.
+    this.#write('replaceState', before);
+    this.#write('pushState', this.#hash());
+  }
+
+  /** The number of this name in the address, or null where it has none that lies within the limits. */
+  number(name: string, least = -Infinity, most = Infinity): number | null {
+    const text = this.seen.get(name) ?? '';
+    const value = Number(text);
+    return text.trim() === '' || !Number.isFinite(value) || value < least || value > most ? null : value;
+  }
+
+  #hash(): string {
+    const seen = writeSeen(this.seen);
+    return `#/${this.#path}${seen === '' ? '' : `?${seen}`}`;
+  }
+
+  #write(how: 'pushState' | 'replaceState', hash: string): void {
+    // One that was just changed, and that nobody has told of yet, is where somebody wants to go.
+    if (location.hash !== this.#known) return;
+    history[how](history.state, '', hash);
+    this.#known = location.hash;
+  }
 }
 
 export const [useRouter, provideRouter] = createContext<Router>();
 
-/** Remember the address. The answer says later whether it is the same: whoever has gone on is not taken back. */
+/** Remember the address. The answer says later whether it is the same page: whoever has gone on is not taken back. */
 export function rememberAddress(): () => boolean {
-  const { hash } = location;
-  return () => location.hash === hash;
+  const path = () => location.hash.replace(/\?.*/s, '');
+  const before = path();
+  return () => path() === before;
 }

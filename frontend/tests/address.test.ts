@@ -1,5 +1,5 @@
-import { afterEach, describe, expect, it, vi } from 'vitest';
-import { rememberAddress } from '../src/router.svelte';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { rememberAddress, Router } from '../src/router.svelte';
 
 describe('the address', () => {
   afterEach(() => vi.unstubAllGlobals());
@@ -11,5 +11,75 @@ describe('the address', () => {
     expect(stillHere()).toBe(true);
     location.hash = '#/operate';
     expect(stillHere()).toBe(false);
+  });
+});
+
+describe('what is seen', () => {
+  let stack: string[];
+  let changed: () => void;
+
+  beforeEach(() => {
+    vi.useFakeTimers();
+    stack = ['#/sessions/3?at=12.5&signals=depth.depth,imu.yaw'];
+    const location = {
+      get hash() {
+        return stack.at(-1) ?? '';
+      },
+      get href() {
+        return `http://turtle:8000/${this.hash}`;
+      },
+    };
+    vi.stubGlobal('location', location);
+    vi.stubGlobal('history', {
+      state: null,
+      pushState: (_state: null, _title: string, hash: string) => stack.push(hash),
+      replaceState: (_state: null, _title: string, hash: string) => (stack[stack.length - 1] = hash),
+    });
+    vi.stubGlobal('window', { addEventListener: (_name: string, read: () => void) => (changed = read) });
+  });
+
+  afterEach(() => {
+    vi.useRealTimers();
+    vi.unstubAllGlobals();
+  });
+
+  it('is read from the address, and nonsense in it is no number', () => {
+    const router = new Router();
+    expect([router.current, router.within, router.number('at')]).toEqual(['sessions', ['3'], 12.5]);
+    expect(router.seen.get('signals')).toBe('depth.depth,imu.yaw');
+    expect(router.number('at', 0, 10)).toBeNull();
+    for (const nonsense of ['x', '', ' ', 'Infinity', '1e999', '%']) {
+      stack = [`#/sessions/3?at=${nonsense}`];
+      changed();
+      expect(router.number('at')).toBeNull();
+    }
+  });
+
+  it('is written when it rests, in place of what was there', () => {
+    const router = new Router();
+    router.show({ at: 13 });
+    router.show({ at: 14, signals: null });
+    expect(router.address).toBe('http://turtle:8000/#/sessions/3?at=14');
+    expect(stack).toEqual(['#/sessions/3?at=12.5&signals=depth.depth,imu.yaw']);
+    vi.runAllTimers();
+    expect(stack).toEqual(['#/sessions/3?at=14']);
+  });
+
+  it('is a step to which "back" returns', () => {
+    const router = new Router();
+    router.show({ at: 13, signals: null });
+    router.show({ from: 1, to: 2 }, true);
+    expect(stack).toEqual(['#/sessions/3?at=13', '#/sessions/3?at=13&from=1&to=2']);
+    stack.pop();
+    changed();
+    expect(router.number('from')).toBeNull();
+  });
+
+  it('never takes back who has gone on', () => {
+    const router = new Router();
+    router.show({ at: 13 });
+    stack.push('#/operate');
+    vi.runAllTimers();
+    expect(stack.at(-1)).toBe('#/operate');
   });
 });
