@@ -3,9 +3,6 @@
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from math import isfinite
-
-import numpy as np
 
 from server.analysis.alignment import NoMomentError, find_moment
 from server.analysis.decimation import decimate
@@ -37,11 +34,11 @@ from server.analysis.schemas import (
     TimeRange,
 )
 from server.analysis.signals import Signal, list_signals, split
+from server.analysis.story import StoryTeller
 from server.library.content import Recording, reading_content
 from server.library.missions import MissionStepStart, RecordedMission, read_missions
 from server.library.timeline import Moment, read_events
 from server.metrics.figure import Figure
-from server.metrics.series import Floats
 from server.platform.models import SessionRow
 from server.platform.store import Reader
 from server.recording.session import find_row
@@ -84,6 +81,7 @@ class Comparer:
         self._missions: ResultCache[list[RecordedMission]] = ResultCache(RESULTS_MAX)
         self._measured: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
         self._counted: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
+        self.stories = StoryTeller(store, self._samples, self._read_history, self._threads)
 
     def signals(self, session: int) -> list[Signal]:
         """Return the signals of a session that can be drawn."""
@@ -121,6 +119,9 @@ class Comparer:
         ]
         return Lines(sessions=drawn)
 
+    def _read_history(self, recording: Recording) -> ControlHistory:
+        return self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
+
     def _open(self, session: int) -> Recording:
         return Recording(self._store, find_row(self._store, session))
 
@@ -135,7 +136,7 @@ class Comparer:
     def _find_offset(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
         # All at once, since the columns of a topic are read together.
         signals = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
-        history = self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
+        history = self._read_history(recording)
         set_point = signals.get(SET_POINT)
         steps = set_point_steps(set_point, history.armed) if set_point is not None else []
         bookmarks = read_bookmarks(self._store, recording)
@@ -197,10 +198,7 @@ class Comparer:
             for name in query.signals
             if name in signals
         }
-        return {
-            name: SignalLine(time=_rounded(line.time, 4), low=_values(line.low), high=_values(line.high))
-            for name, line in drawn.items()
-        }
+        return {name: SignalLine.of(line) for name, line in drawn.items()}
 
 
 def _range(session: _AlignedSession, query: ComparisonQuery) -> EvaluationRange:
@@ -230,13 +228,3 @@ def _chosen_signals(names: Sequence[str], aligned: Sequence[_AlignedSession]) ->
         for signal in list_signals(session.recording, topics):
             known.setdefault(signal.name, signal)
     return [known[name] for name in names if name in known]
-
-
-def _rounded(values: Floats, digits: int) -> list[float]:
-    rounded: list[float] = np.round(values, digits).tolist()
-    return rounded
-
-
-def _values(values: Floats) -> list[float | None]:
-    """Return the values with six significant digits; null for NaN, which JSON lacks."""
-    return [float(f"{value:.6g}") if isfinite(value) else None for value in values.tolist()]

@@ -66,16 +66,26 @@ def measure(
 
     Raise StoreError, RecordingError.
     """
+    if not evaluated.spans:
+        return {}
+    return measure_series(samples.read(recording, [MEASURED, SET_POINT, OUTPUT]), history, evaluated, band)
+
+
+def measure_series(
+    series: Mapping[str, Series],
+    history: ControlHistory,
+    evaluated: EvaluationRange,
+    band: float | None = None,
+) -> dict[str, Figure]:
+    """Return the same of signals that are read already, by their names; a missing one has no figures."""
     figures: dict[str, Figure] = {}
-    if evaluated.spans:
-        series = samples.read(recording, [MEASURED, SET_POINT, OUTPUT])
-        depth, set_point = series.get(MEASURED), series.get(SET_POINT)
-        if depth is not None and set_point is not None:
-            steps = set_point_steps(set_point, history.armed)
-            figures |= _depth_figures(depth, set_point, steps, history, evaluated, band)
-            figures |= _latencies(depth, set_point, steps, history, evaluated)
-        if (output := series.get(OUTPUT)) is not None:
-            figures["effort"] = _effort(output, evaluated)
+    depth, set_point = series.get(MEASURED), series.get(SET_POINT)
+    if depth is not None and set_point is not None:
+        steps = set_point_steps(set_point, history.armed)
+        figures |= _depth_figures(depth, set_point, steps, history, evaluated, band)
+        figures |= _latencies(depth, set_point, steps, history, evaluated)
+    if (output := series.get(OUTPUT)) is not None:
+        figures["effort"] = _effort(output, evaluated)
     return figures
 
 
@@ -84,9 +94,10 @@ def count(store: Reader, recording: Recording, spans: Sequence[Span]) -> dict[st
 
     Raise StoreError, RecordingError.
     """
-    figures = {"fin_strokes": _strokes(recording, spans)} if spans else {}
+    figures = {"fin_strokes": count_fin_strokes(recording, spans)} if spans else {}
     whole = spans or (Span(0.0, recording.row.duration),)
-    return figures | _link(recording, whole) | {"gaps": _gaps(store, recording, whole)}
+    losses = count_losses(read_losses(recording), whole)
+    return figures | losses | {"gaps": _gaps(store, recording, whole)}
 
 
 def complete(measured: Mapping[str, Figure], why: str) -> dict[str, Figure]:
@@ -206,7 +217,7 @@ def _latencies(
     motions: list[float | None] = []
     for span in evaluated.spans:
         inside = [(time, value) for time, value in steps if span.start <= time < span.end]
-        shown = [time for time in history.cards if span.start <= time < span.end]
+        shown = [change.time for change in history.cards if span.start <= change.time < span.end]
         cards += card_latencies(shown, [time for time, _ in inside], span.end)
         for (begin, value), end in zip(inside, [*(time for time, _ in inside), span.end][1:], strict=True):
             if abs(value - _held(set_point, np.array([begin - 1e-6]))[0]) >= HEIGHT_LEAST:
@@ -247,7 +258,8 @@ def _effort(output: Series, evaluated: EvaluationRange) -> Figure:
     return Figure(value=100 * effort(output.values[inside]))
 
 
-def _strokes(recording: Recording, spans: Sequence[Span]) -> Figure:
+def count_fin_strokes(recording: Recording, spans: Sequence[Span]) -> Figure:
+    """Return the strokes of all fins. Raise StoreError, RecordingError."""
     origin = recording.row.started_steady
     strokes, seen = 0.0, False
     for span in spans:
@@ -261,8 +273,13 @@ def _strokes(recording: Recording, spans: Sequence[Span]) -> Figure:
     return Figure(value=strokes)
 
 
-def _link(recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
-    columns = read_topic(recording, LINK.name, _LINK.values())
+def read_losses(recording: Recording) -> dict[str, Series]:
+    """Return the link's counters, by their columns. Raise StoreError, RecordingError."""
+    return read_topic(recording, LINK.name, _LINK.values())
+
+
+def count_losses(columns: Mapping[str, Series], spans: Sequence[Span]) -> dict[str, Figure]:
+    """Return what these counters of the link counted in the spans."""
     figures: dict[str, Figure] = {}
     for name, column in _LINK.items():
         if column not in columns:

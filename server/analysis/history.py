@@ -8,7 +8,14 @@ import numpy as np
 from sqlmodel import col, select
 
 from robot_runtime.contract.topics import PARAMETERS, STATE
-from server.analysis.moments import ControlHistory, ControlPeriod, ParameterValues, Span
+from server.analysis.moments import (
+    CardChange,
+    ControlHistory,
+    ControlPeriod,
+    ModePeriod,
+    ParameterValues,
+    Span,
+)
 from server.analysis.samples import Samples
 from server.library.content import Recording, depth_loop
 from server.library.crafts import read_crafts, which_water
@@ -44,6 +51,7 @@ def read_history(recording: Recording, samples: Samples) -> ControlHistory:
         controls=tuple(_controls(changes, origin)),
         state=(before or changes[:1])[-1],
         parameters=tuple(_parameter_values(recording, origin)),
+        modes=tuple(_modes(changes, origin)),
         cards=tuple(_card_changes(changes, origin)),
         water=water,
         crafts=crafts,
@@ -93,10 +101,21 @@ def _spans_of_states(changes: list[dict[str, Any]], origin: float, end: float) -
         yield Span(since, max(end, since))
 
 
-def _card_changes(changes: list[dict[str, Any]], origin: float) -> Iterator[float]:
+def _card_changes(changes: list[dict[str, Any]], origin: float) -> Iterator[CardChange]:
     for before, document in pairwise(changes):
         if before.get("card") != document.get("card"):
-            yield document["time"] - origin
+            yield CardChange(document["time"] - origin, document.get("card"))
+
+
+def _modes(changes: list[dict[str, Any]], origin: float) -> Iterator[ModePeriod]:
+    before: tuple[str, bool] | None = None
+    for document in changes:
+        mode = str(document.get("mode", ""))
+        # In automatic the depth is held whatever the loop says; a pilot may have it held, too.
+        now = mode, mode == "automatic" or (mode == "manual" and bool(depth_loop(document).get("on")))
+        if now != before:
+            before = now
+            yield ModePeriod(document["time"] - origin, *now)
 
 
 def _spans_of_flags(flags: Series) -> tuple[Span, ...]:
@@ -131,4 +150,5 @@ def _controls(changes: list[dict[str, Any]], origin: float) -> Iterator[ControlP
         gains = {gain["name"]: float(gain["value"]) for gain in chosen["gains"]} if chosen else {}
         if (name, gains) != before:
             before = name, gains
-            yield ControlPeriod(document["time"] - origin, name, gains)
+            title = str(chosen.get("title", name)) if chosen else name
+            yield ControlPeriod(document["time"] - origin, name, gains, title)

@@ -21,6 +21,25 @@ class ControlPeriod:
     time: float
     controller: str
     gains: dict[str, float]
+    title: str = ""
+    """The controller's name for a person; empty where the recording lacks it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModePeriod:
+    """The mode in force from `time` on."""
+
+    time: float
+    mode: str
+    holds_depth: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CardChange:
+    """The card before the camera from `time` on; None: no card any more."""
+
+    time: float
+    card: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +63,9 @@ class ControlHistory:
     """The newest state document at the first arming, or the first one; empty without any."""
     parameters: tuple[ParameterValues, ...] = ()
     """Empty in recordings of versions without parameters."""
-    cards: tuple[float, ...] = ()
-    """The times at which the card before the camera changed."""
+    modes: tuple[ModePeriod, ...] = ()
+    """Empty in recordings without state documents."""
+    cards: tuple[CardChange, ...] = ()
     water: Water = "unknown"
     crafts: tuple[RecordedCraft, ...] = ()
     """The simulated ones; empty in real water, and in recordings of versions without them."""

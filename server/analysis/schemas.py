@@ -1,16 +1,20 @@
 """Requests and answers of the comparison of sessions."""
 
-from typing import Annotated
+from math import isfinite
+from typing import Annotated, Self
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from server.analysis.alignment import Align
+from server.analysis.decimation import Envelope
 from server.analysis.differences import Difference
 from server.analysis.signals import Signal
 from server.http.request_body import RequestBody
 from server.library.missions import MissionStepStart
 from server.library.timeline import Moment
 from server.metrics.figure import Figure, FigureMeaning
+from server.metrics.series import Floats
 from server.platform.models import IDENTIFIER_MAX
 
 SESSIONS_MAX = 12
@@ -47,6 +51,13 @@ class ComparisonQuery(LinesQuery):
     range: TimeRange | None = Field(default=None, description="for the figures; the armed time if null")
     band: Annotated[float, Field(gt=0, le=10, description="m, of the settling time")] | None = None
     figures: bool = Field(default=True, description="false: none, and the answer comes sooner")
+
+
+class StoryFiguresQuery(RequestBody):
+    """A session, and the part of its time (s since its start) whose figures are wanted; all of it if null."""
+
+    session: Identifier
+    part: TimeRange | None = None
 
 
 class ReportQuery(BaseModel):
@@ -88,12 +99,22 @@ def _range(start: float | None, end: float | None) -> TimeRange | None:
     return None if start is None or end is None else TimeRange(start=start, end=end)
 
 
+def _values(values: Floats) -> list[float | None]:
+    """Return null for NaN, which JSON lacks."""
+    return [float(f"{value:.6g}") if isfinite(value) else None for value in values.tolist()]
+
+
 class SignalLine(BaseModel):
     """A signal over time, decimated to minimum and maximum of each column; null breaks the line."""
 
     time: list[float] = Field(description="s since the session's start")
     low: list[float | None]
     high: list[float | None]
+
+    @classmethod
+    def of(cls, line: Envelope) -> Self:
+        """Return a decimated signal, values with six significant digits."""
+        return cls(time=np.round(line.time, 4).tolist(), low=_values(line.low), high=_values(line.high))
 
 
 class SessionLines(BaseModel):

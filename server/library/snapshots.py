@@ -4,13 +4,11 @@ from itertools import islice
 
 from pydantic import BaseModel, Field
 
-from robot_runtime.contract.chunks import row_layout
 from robot_runtime.contract.topics import DEPTH, IMU, SNAPSHOT, TRACK
 from robot_runtime.control.attitude import euler_angles
 from server.library.content import Recording
+from server.library.readings import newest_row
 
-VALUE_SECONDS = 2.0
-"""s before the picture: an older sample is no value of its moment."""
 SNAPSHOTS_SHOWN = 60
 """Snapshots in one answer."""
 
@@ -49,9 +47,9 @@ def list_snapshots(recording: Recording, after: float) -> list[SnapshotValues]:
 
 def read_values(recording: Recording, time: float) -> SnapshotValues:
     """Return the values at a time (s, steady clock). Raise StoreError, RecordingError."""
-    depth = _newest(recording, DEPTH.name, time)
-    imu = _newest(recording, IMU.name, time)
-    track = _newest(recording, TRACK.name, time)
+    depth = newest_row(recording, DEPTH.name, time)
+    imu = newest_row(recording, IMU.name, time)
+    track = newest_row(recording, TRACK.name, time)
     heading, pitch, roll = (
         (None, None, None)
         if imu is None
@@ -70,21 +68,3 @@ def read_values(recording: Recording, time: float) -> SnapshotValues:
 
 def _zero(recording: Recording) -> float:
     return recording.row.started_steady
-
-
-def _newest(recording: Recording, topic: str, time: float) -> dict[str, float] | None:
-    """Return the columns of the newest row at this time, in their units; None where there is none."""
-    if topic not in recording.topics:
-        return None
-    layout = row_layout(recording.topics[topic])
-    rows = (
-        row
-        for some in recording.rows(topic, time - VALUE_SECONDS, time)
-        for row in layout.row.iter_unpack(some)
-        if time - VALUE_SECONDS <= row[0] <= time
-    )
-    newest = max(rows, key=lambda row: row[0], default=None)
-    if newest is None:
-        return None
-    values = zip(newest[1:], layout.scales, strict=True)
-    return dict(zip(layout.names, (value * scale for value, scale in values), strict=True))

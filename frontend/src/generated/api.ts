@@ -314,6 +314,9 @@ export interface paths {
     "/api/sessions/{session}/purge": {
         post: operations["purgeSession"];
     };
+    "/api/sessions/{session}/readings": {
+        get: operations["getReadings"];
+    };
     "/api/sessions/{session}/restore": {
         post: operations["restoreSession"];
     };
@@ -329,11 +332,20 @@ export interface paths {
     "/api/sessions/{session}/stop": {
         post: operations["stopSession"];
     };
+    "/api/sessions/{session}/story": {
+        get: operations["getStory"];
+    };
+    "/api/sessions/{session}/story/figures": {
+        get: operations["getStoryFigures"];
+    };
     "/api/sessions/{session}/thumbnail": {
         get: operations["getThumbnail"];
     };
     "/api/sessions/{session}/timeline": {
         get: operations["getTimeline"];
+    };
+    "/api/sessions/{session}/track": {
+        get: operations["getTrack"];
     };
     "/api/simulator": {
         put: operations["putSimulator"];
@@ -1198,6 +1210,12 @@ export interface components {
             end: number;
             start: number;
         };
+        /** @description One fin: angles in rad, and the drive. */
+        FinReading: {
+            angle: number;
+            drive: number;
+            set_angle: number;
+        };
         /** @description A fin that is turned by hand. */
         FinTurn: {
             fin: number;
@@ -1225,6 +1243,16 @@ export interface components {
             offsets: number[] | null;
             /** @description number of windows of 8 s that could be used */
             windows: number;
+        };
+        /** @description Something that happened at a moment of a dive. */
+        Flag: {
+            /** @enum {string} */
+            kind: "event" | "alarm" | "card" | "bookmark" | "controller" | "gains" | "set_point" | "mission";
+            /** @enum {string} */
+            severity: "info" | "caution" | "alarm";
+            text: string;
+            /** @description s since the session's start */
+            time: number;
         };
         /** @description One number of a controller that may be tuned. */
         Gain: {
@@ -1934,6 +1962,27 @@ export interface components {
             /** @description °C */
             temperature: number | null;
         };
+        /** @description The robot's values at a moment; null where none was measured within 2 s before. */
+        Readings: {
+            /** @description V */
+            battery: number | null;
+            /** @description of the depth's controller, -1 to 1, downwards */
+            command: number | null;
+            /** @description m */
+            depth: number | null;
+            /** @description front right, back right, back left, front left; or empty */
+            fins: components["schemas"]["FinReading"][];
+            /** @description rad */
+            heading: number | null;
+            /** @description rad */
+            pitch: number | null;
+            /** @description rad */
+            roll: number | null;
+            /** @description m, also while no depth is held */
+            set_point: number | null;
+            /** @description s since the session's start */
+            time: number;
+        };
         /** @description One column of a topic, as it is exported. */
         RecordedColumn: {
             meaning: string;
@@ -2120,6 +2169,24 @@ export interface components {
              * @enum {string}
              */
             name: "follow" | "side" | "top";
+        };
+        /** @description A time in which the robot was armed and nothing was changed; s since the session's start. */
+        Segment: {
+            /** @description empty where no depth was held */
+            controller: string;
+            end: number;
+            /** @description by name */
+            gains: {
+                [key: string]: number;
+            };
+            holds_depth: boolean;
+            /** @description empty where the recording lacks it */
+            mode: string;
+            /** @description m; null where no depth was held, or where it changed on and on */
+            set_point: number | null;
+            start: number;
+            /** @description the controller's name for a person */
+            title: string;
         };
         /** @description One recording; "interrupted" if the server ended without closing it: its stored samples remain. */
         Session: {
@@ -2432,6 +2499,46 @@ export interface components {
             total: number;
             /** @description days in the bin before a session is removed */
             undo_days: number;
+        };
+        /** @description A session as one dive; times are s since its start. */
+        Story: {
+            /** @description m; null where the session has none */
+            depth: components["schemas"]["SignalLine"] | null;
+            duration: number;
+            /** @description in order of time; of too many the gravest */
+            flags: components["schemas"]["Flag"][];
+            /** @description number of all segments */
+            segment_count: number;
+            /** @description in order of time, the first 200 */
+            segments: components["schemas"]["Segment"][];
+            /** @description m, while the depth was held; null where it never was */
+            set_point: components["schemas"]["SignalLine"] | null;
+            /** @enum {string} */
+            water: "simulated" | "real" | "unknown";
+        };
+        /** @description The figures of a dive, by name. */
+        StoryFigures: {
+            meanings: components["schemas"]["FigureMeaning"][];
+            /** @description in the order of the story's segments, the first 200; empty for a chosen part */
+            segments: {
+                [key: string]: components["schemas"]["Figure"];
+            }[];
+            /** @description of the armed time, or of the chosen part */
+            whole: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+        };
+        /** @description The track from an arming to the disarming. */
+        SwumTrack: {
+            /** @description m, standard deviations of the last x and y */
+            deviation: [
+                number,
+                number
+            ];
+            /** @description by dead reckoning: its error grows */
+            estimate: components["schemas"]["Way"];
+            /** @description null where it was not simulated */
+            truth: components["schemas"]["Way"] | null;
         };
         /** @description One entry of the thesis's tables. */
         TableCell: {
@@ -2771,6 +2878,17 @@ export interface components {
         VisionText: {
             text: string;
         };
+        /** @description Points of a track, in order of time. */
+        Way: {
+            /** @description m */
+            depth: number[];
+            /** @description s since the session's start */
+            time: number[];
+            /** @description m, along heading 0 */
+            x: number[];
+            /** @description m, along heading 90° */
+            y: number[];
+        };
         /** @description Sets the surface's pressure to the pressure now. It is refused while the robot is armed. */
         ZeroDepthCommand: Record<string, never>;
     };
@@ -2843,9 +2961,11 @@ export type FigureMark = components['schemas']['FigureMark'];
 export type FigureMeaning = components['schemas']['FigureMeaning'];
 export type FilmDescription = components['schemas']['FilmDescription'];
 export type FilmSpan = components['schemas']['FilmSpan'];
+export type FinReading = components['schemas']['FinReading'];
 export type FinTurn = components['schemas']['FinTurn'];
 export type Finding = components['schemas']['Finding'];
 export type FittedSession = components['schemas']['FittedSession'];
+export type Flag = components['schemas']['Flag'];
 export type Gain = components['schemas']['Gain'];
 export type HandsOrder = components['schemas']['HandsOrder'];
 export type Health = components['schemas']['Health'];
@@ -2919,6 +3039,7 @@ export type ProfileText = components['schemas']['ProfileText'];
 export type Proposal = components['schemas']['Proposal'];
 export type QueuedRun = components['schemas']['QueuedRun'];
 export type RawReadings = components['schemas']['RawReadings'];
+export type Readings = components['schemas']['Readings'];
 export type RecordedColumn = components['schemas']['RecordedColumn'];
 export type RecordedCraft = components['schemas']['RecordedCraft'];
 export type RecordedMission = components['schemas']['RecordedMission'];
@@ -2936,6 +3057,7 @@ export type ScenarioState = components['schemas']['ScenarioState'];
 export type ScenarioSummary = components['schemas']['ScenarioSummary'];
 export type ScenarioText = components['schemas']['ScenarioText'];
 export type SceneView = components['schemas']['SceneView'];
+export type Segment = components['schemas']['Segment'];
 export type Session = components['schemas']['Session'];
 export type SessionBase = components['schemas']['SessionBase'];
 export type SessionChanges = components['schemas']['SessionChanges'];
@@ -2953,6 +3075,9 @@ export type StateSilence = components['schemas']['StateSilence'];
 export type SteeringCommand = components['schemas']['SteeringCommand'];
 export type StepStart = components['schemas']['StepStart'];
 export type Storage = components['schemas']['Storage'];
+export type Story = components['schemas']['Story'];
+export type StoryFigures = components['schemas']['StoryFigures'];
+export type SwumTrack = components['schemas']['SwumTrack'];
 export type TableCell = components['schemas']['TableCell'];
 export type TakenSnapshot = components['schemas']['TakenSnapshot'];
 export type TestDocument = components['schemas']['TestDocument'];
@@ -2977,6 +3102,7 @@ export type VisionSettings = components['schemas']['VisionSettings'];
 export type VisionSettingsCommand = components['schemas']['VisionSettingsCommand'];
 export type VisionSetup = components['schemas']['VisionSetup'];
 export type VisionText = components['schemas']['VisionText'];
+export type Way = components['schemas']['Way'];
 export type ZeroDepthCommand = components['schemas']['ZeroDepthCommand'];
 export interface operations {
     makeCode: {
@@ -4711,6 +4837,25 @@ export interface operations {
             204: { content?: never };
         };
     };
+    getReadings: {
+        parameters: {
+            query: {
+                /** @description s since the start */
+                time: number;
+            };
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["Readings"];
+                };
+            };
+        };
+    };
     restoreSession: {
         parameters: {
             query?: never;
@@ -4797,6 +4942,43 @@ export interface operations {
             };
         };
     };
+    getStory: {
+        parameters: {
+            query?: never;
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["Story"];
+                };
+            };
+        };
+    };
+    getStoryFigures: {
+        parameters: {
+            query?: {
+                /** @description start of the part, s since the start */
+                from?: number | null;
+                /** @description end of the part, s since the start */
+                to?: number | null;
+            };
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["StoryFigures"];
+                };
+            };
+        };
+    };
     getThumbnail: {
         parameters: {
             query: {
@@ -4828,6 +5010,22 @@ export interface operations {
             200: {
                 content: {
                     "application/json": components["schemas"]["Timeline"];
+                };
+            };
+        };
+    };
+    getTrack: {
+        parameters: {
+            query?: never;
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SwumTrack"][];
                 };
             };
         };

@@ -10,8 +10,9 @@ from pydantic import TypeAdapter
 
 from server.analysis.comparer import Comparer
 from server.analysis.report import write_report
-from server.analysis.schemas import ComparisonQuery, LinesQuery, ReportQuery
+from server.analysis.schemas import ComparisonQuery, LinesQuery, ReportQuery, StoryFiguresQuery
 from server.analysis.signals import Signal
+from server.analysis.track import SwumTrack
 from server.platform.errors import ApiError, UnavailableError
 from server.platform.store import Reader
 
@@ -41,7 +42,31 @@ def report(comparer: Comparer, query: str) -> bytes:
     return write_report(comparer.compare(asked.parse()), asked.shown).encode()
 
 
-TASKS: Mapping[str, Task] = {"compare": compare, "lines": lines, "signals": signals, "report": report}
+def story(comparer: Comparer, query: str) -> bytes:
+    """Return the story of the session of this number, as JSON."""
+    return comparer.stories.tell(json.loads(query)).model_dump_json().encode()
+
+
+def track(comparer: Comparer, query: str) -> bytes:
+    """Return the tracks of the session of this number, as JSON."""
+    return TypeAdapter(list[SwumTrack]).dump_json(comparer.stories.track(json.loads(query)))
+
+
+def story_figures(comparer: Comparer, query: str) -> bytes:
+    """Return the figures of a story, as JSON."""
+    asked = StoryFiguresQuery.model_validate_json(query)
+    return comparer.stories.measure(asked.session, asked.part).model_dump_json().encode()
+
+
+TASKS: Mapping[str, Task] = {
+    "compare": compare,
+    "lines": lines,
+    "signals": signals,
+    "report": report,
+    "story": story,
+    "track": track,
+    "story_figures": story_figures,
+}
 
 
 def answer_all(database: Path, tasks: Iterable[bytes]) -> None:

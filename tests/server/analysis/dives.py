@@ -78,6 +78,7 @@ def dive(
             state_block(
                 index,
                 time=time,
+                mode="automatic" if armed else "disarmed",
                 armed=armed,
                 armed_since=ARMED if armed else None,
                 card=card,

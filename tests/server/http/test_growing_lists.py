@@ -8,7 +8,11 @@ from robot_runtime.contract.missions import NODES_MAX
 from robot_runtime.contract.vision_settings import COLOURS_MAX, MARKERS_MAX
 from robot_runtime.experiments.comm_test.document import CELLS_MAX
 from robot_runtime.experiments.scenario.document import EVENTS_MAX as SCENARIO_EVENTS_MAX
+from server.analysis.flags import FLAGS_MAX
 from server.analysis.schemas import SESSIONS_MAX
+from server.analysis.segment_figures import SEGMENTS_MAX
+from server.analysis.story import COLUMNS
+from server.analysis.track import POINTS_MAX, TRACKS_MAX
 from server.app import create_app
 from server.driving.changes import SHOWN
 from server.features.comm_tests.runs import LISTED_MOST as TESTS_LISTED
@@ -75,6 +79,20 @@ LIMITS = {
     "/api/sessions/{session}/missions started": NODES_MAX,
     "/api/sessions/{session}/signals": COLUMNS_MAX,
     "/api/sessions/{session}/snapshots": SNAPSHOTS_SHOWN,
+    **{
+        f"/api/sessions/{{session}}/story {line} {column}": 2 * COLUMNS + 1
+        for line in ("depth", "set_point")
+        for column in ("time", "low", "high")
+    },
+    "/api/sessions/{session}/story flags": FLAGS_MAX,
+    "/api/sessions/{session}/story segments": SEGMENTS_MAX,
+    "/api/sessions/{session}/story/figures segments": SEGMENTS_MAX,
+    "/api/sessions/{session}/track": TRACKS_MAX,
+    **{
+        f"/api/sessions/{{session}}/track {way} {column}": POINTS_MAX
+        for way in ("estimate", "truth")
+        for column in ("time", "x", "y", "depth")
+    },
     "/api/sessions/{session}/timeline events": SHOWN_MAX,
     "/api/sessions/{session}/timeline holes": SHOWN_MAX,
     "/api/sessions/{session}/timeline markers": SHOWN_MAX,
@@ -135,6 +153,11 @@ FIXED = {
     "/api/robot loops controllers gains",
     "/api/robot paces",
     "/api/robot refusals",
+    "/api/sessions/{session}/readings fins",
+    "/api/sessions/{session}/story segments gains",
+    "/api/sessions/{session}/story/figures meanings",
+    "/api/sessions/{session}/story/figures segments",
+    "/api/sessions/{session}/story/figures whole",
     "/api/tuning/runs figures",
     "/api/tuning/runs runs cycle remarks",
     "/api/tuning/runs runs figures",

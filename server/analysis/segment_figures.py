@@ -1,0 +1,117 @@
+"""Figures of a dive: of all its armed time, of each of its segments, or of a part that somebody chose."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf
+
+import numpy as np
+from pydantic import BaseModel, Field
+
+from server.analysis.definitions import FIGURES
+from server.analysis.figures import (
+    MEASURED,
+    NEVER_ARMED,
+    NOTHING_THERE,
+    SET_POINT,
+    EvaluationRange,
+    count_fin_strokes,
+    count_losses,
+    measure_series,
+    read_losses,
+)
+from server.analysis.moments import ControlHistory, Span
+from server.analysis.samples import Samples
+from server.analysis.segments import Segment
+from server.library.content import Recording
+from server.library.timeline import EVENTS_MAX, read_events
+from server.metrics.figure import Figure, FigureMeaning, describe
+
+SEGMENTS_MAX = 200
+_SHARED = ("rmse", "cycle_amplitude", "overshoot", "settling_time", "fin_strokes", "frames_lost")
+"""Those of a comparison that a dive shows, too."""
+STORY_FIGURES: tuple[FigureMeaning, ...] = (
+    describe("duration", "Duration", "s", 1, "Time armed in the range.", "neither"),
+    describe("deepest", "Greatest depth", "m", 2, "Greatest depth in the range.", "neither"),
+    *(meaning for name in _SHARED for meaning in FIGURES if meaning.name == name),
+    describe("alarms", "Alarms", "", 0, "Alarms that began in the range."),
+)
+_OF_A_STEP = ("cycle_amplitude", "overshoot", "settling_time")
+NOT_HELD = "No depth was held."
+NOTHING_HELD_THERE = "No depth was held in this range."
+SEVERAL = "One number of several segments would mean little: see those of each."
+
+
+class StoryFigures(BaseModel):
+    """The figures of a dive, by name."""
+
+    meanings: list[FigureMeaning]
+    whole: dict[str, Figure] = Field(description="of the armed time, or of the chosen part")
+    segments: list[dict[str, Figure]] = Field(
+        description=f"in the order of the story's segments, the first {SEGMENTS_MAX}; empty for a chosen part"
+    )
+
+
+class DiveFigures:
+    """Computes figures of one session, whose signals are read once. Raise StoreError, RecordingError."""
+
+    def __init__(
+        self, recording: Recording, samples: Samples, history: ControlHistory, segments: Sequence[Segment]
+    ) -> None:
+        self._recording = recording
+        self._history = history
+        self._segments = segments
+        self._series = samples.read(recording, [MEASURED, SET_POINT])
+        self._losses = read_losses(recording)
+        events = read_events(recording, EVENTS_MAX)
+        self._alarms = np.array([event.time for event in events if event.severity == "alarm"])
+
+    def measure_all(self) -> StoryFigures:
+        """Return the figures of the armed time, and of each segment."""
+        armed = tuple(Span(max(span.start, 0.0), span.end) for span in self._history.armed)
+        return StoryFigures(
+            meanings=[*STORY_FIGURES],
+            whole=self._measure(armed, NOT_HELD),
+            segments=[
+                self._measure((Span(segment.start, segment.end),), NOT_HELD)
+                for segment in self._segments[:SEGMENTS_MAX]
+            ],
+        )
+
+    def measure_part(self, start: float, end: float) -> StoryFigures:
+        """Return the figures of a part of the time (s since the session's start)."""
+        whole = self._measure((Span(start, end),), NOTHING_HELD_THERE)
+        return StoryFigures(meanings=[*STORY_FIGURES], whole=whole, segments=[])
+
+    def _measure(self, spans: tuple[Span, ...], not_held: str) -> dict[str, Figure]:
+        if not spans:
+            return _complete(count_losses(self._losses, (Span(0.0, inf),)), NEVER_ARMED)
+        evaluated = EvaluationRange(spans)
+        held = [*self._held(spans)]
+        figures = measure_series(self._series, self._history, EvaluationRange(tuple(held))) if held else {}
+        if len(held) > 1:
+            figures |= dict.fromkeys(_OF_A_STEP, Figure(value=None, words=SEVERAL))
+        figures |= count_losses(self._losses, spans)
+        figures["duration"] = Figure(value=sum(span.end - span.start for span in spans))
+        figures["deepest"] = self._deepest(evaluated)
+        figures["fin_strokes"] = count_fin_strokes(self._recording, spans)
+        figures["alarms"] = Figure(value=float(np.count_nonzero(evaluated.mask(self._alarms))))
+        return _complete(figures, NOTHING_THERE if held else not_held)
+
+    def _held(self, spans: tuple[Span, ...]) -> Iterator[Span]:
+        """Yield the parts of these spans in which the depth was held, one for each segment."""
+        for segment in self._segments:
+            for span in spans:
+                start, end = max(span.start, segment.start), min(span.end, segment.end)
+                if segment.holds_depth and start < end:
+                    yield Span(start, end)
+
+    def _deepest(self, evaluated: EvaluationRange) -> Figure:
+        depth = self._series.get(MEASURED)
+        inside = np.empty(0) if depth is None else depth.values[evaluated.mask(depth.times)]
+        if not inside.size:
+            return Figure(value=None, words="The recording has no depth in this range.")
+        return Figure(value=float(inside.max()))
+
+
+def _complete(figures: Mapping[str, Figure], why: str) -> dict[str, Figure]:
+    missing = Figure(value=None, words=why)
+    return {meaning.name: figures.get(meaning.name, missing) for meaning in STORY_FIGURES}

@@ -1,0 +1,135 @@
+"""The story of a dive: its depth, its segments, what happened, its figures and its track."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from pydantic import BaseModel, Field
+
+from server.analysis.decimation import decimate
+from server.analysis.figures import MEASURED, SET_POINT
+from server.analysis.flags import Flag, gather_flags
+from server.analysis.history import read_bookmarks
+from server.analysis.moments import ControlHistory
+from server.analysis.result_cache import ResultCache
+from server.analysis.samples import Samples
+from server.analysis.schemas import SignalLine, TimeRange
+from server.analysis.segment_figures import SEGMENTS_MAX, DiveFigures, StoryFigures
+from server.analysis.segments import Segment, find_segments
+from server.analysis.track import DEPTH, ESTIMATE, TRUE, SwumTrack, find_tracks
+from server.library.content import Recording, reading_content
+from server.library.crafts import Water
+from server.library.missions import read_missions
+from server.library.timeline import EVENTS_MAX, read_events
+from server.metrics.series import Series
+from server.platform.store import Reader
+from server.recording.session import find_row
+
+COLUMNS = 1500
+"""Of the line of the depth: as many as pixels of a page."""
+STORIES_MAX = 32
+SIGNALS = (MEASURED, SET_POINT)
+
+
+class Story(BaseModel):
+    """A session as one dive; times are s since its start."""
+
+    duration: float
+    water: Water
+    depth: SignalLine | None = Field(description="m; null where the session has none")
+    set_point: SignalLine | None = Field(description="m, while the depth was held; null where it never was")
+    segments: list[Segment] = Field(description=f"in order of time, the first {SEGMENTS_MAX}")
+    segment_count: int = Field(description="number of all segments")
+    flags: list[Flag] = Field(description="in order of time; of too many the gravest")
+
+
+class StoryTeller:
+    """Stories of sessions; those of complete ones are cached.
+
+    Methods raise UnknownSessionError, StoreError and RecordingError.
+    """
+
+    def __init__(
+        self,
+        store: Reader,
+        samples: Samples,
+        read_history: Callable[[Recording], ControlHistory],
+        threads: ThreadPoolExecutor,
+    ) -> None:
+        self._store = store
+        self._samples = samples
+        self._read_history = read_history
+        self._threads = threads
+        self._stories: ResultCache[Story] = ResultCache(STORIES_MAX)
+        self._measured: ResultCache[StoryFigures] = ResultCache(STORIES_MAX)
+        self._tracks: ResultCache[list[SwumTrack]] = ResultCache(STORIES_MAX)
+
+    def tell(self, session: int) -> Story:
+        """Return the story of a session."""
+        recording = self._open(session)
+        with reading_content(recording.row):
+            # Both take a second where a dive lasts hours.
+            reading = self._threads.submit(self._read_history, recording)
+            self._samples.read(recording, SIGNALS)
+            history = reading.result()
+            story = self._stories.compute(recording.row, None, lambda: self._tell(recording, history))
+            events, missions = read_events(recording, EVENTS_MAX), read_missions(recording)[0]
+            # Bookmarks change after the dive, too: what depends on them is not cached.
+            flags = gather_flags(events, read_bookmarks(self._store, recording), missions, history)
+            return story.model_copy(update={"flags": flags})
+
+    def track(self, session: int) -> list[SwumTrack]:
+        """Return the tracks of a session, one of each arming."""
+        recording = self._open(session)
+
+        def find() -> list[SwumTrack]:
+            estimate = self._samples.read(recording, ESTIMATE)
+            # Reading the others takes seconds where a dive lasts hours.
+            others = self._samples.read(recording, [*TRUE, DEPTH]) if estimate else {}
+            return find_tracks(estimate | others, self._read_history(recording).armed)
+
+        with reading_content(recording.row):
+            return self._tracks.compute(recording.row, None, find)
+
+    def measure(self, session: int, part: TimeRange | None) -> StoryFigures:
+        """Return the figures of a session and of its segments, or of a part of its time alone."""
+        recording = self._open(session)
+
+        def compute() -> StoryFigures:
+            history = self._read_history(recording)
+            set_point = self._samples.read(recording, [SET_POINT]).get(SET_POINT)
+            segments = find_segments(history, set_point, recording.row.duration)
+            figures = DiveFigures(recording, self._samples, history, segments)
+            return figures.measure_all() if part is None else figures.measure_part(part.start, part.end)
+
+        with reading_content(recording.row):
+            return self._measured.compute(recording.row, part and (part.start, part.end), compute)
+
+    def _open(self, session: int) -> Recording:
+        return Recording(self._store, find_row(self._store, session))
+
+    def _tell(self, recording: Recording, history: ControlHistory) -> Story:
+        series = self._samples.read(recording, SIGNALS)
+        duration = max(recording.row.duration, 1e-3)
+        depth, set_point = series.get(MEASURED), series.get(SET_POINT)
+        segments = find_segments(history, set_point, recording.row.duration)
+        held = None if set_point is None else _while_held(set_point, segments)
+        return Story(
+            duration=recording.row.duration,
+            water=history.water,
+            depth=None if depth is None else SignalLine.of(decimate(depth, 0.0, duration, COLUMNS)),
+            set_point=None if held is None else SignalLine.of(decimate(held, 0.0, duration, COLUMNS)),
+            segments=segments[:SEGMENTS_MAX],
+            segment_count=len(segments),
+            flags=[],
+        )
+
+
+def _while_held(set_point: Series, segments: list[Segment]) -> Series | None:
+    """Return the set point where a segment holds the depth, NaN elsewhere; None where none does."""
+    held = np.zeros(set_point.times.size, bool)
+    for segment in segments:
+        if segment.holds_depth:
+            first, last = np.searchsorted(set_point.times, [segment.start, segment.end])
+            held[first:last] = True
+    return Series(set_point.times, np.where(held, set_point.values, np.nan)) if held.any() else None
