@@ -159,6 +159,8 @@ export const api = {
     ask(server.GET('/api/sessions/{session}/snapshots', { params: { path: { session }, query: after === null ? {} : { after } } })),
   snapshotPicture: (session: number, time: number) => address('/api/sessions/{session}/snapshot', { path: { session }, query: { time } }),
   thumbnail: (session: number, time: number) => address('/api/sessions/{session}/thumbnail', { path: { session }, query: { time } }),
+  filmPlan: () => ask(server.GET('/api/film')),
+  chooseFilm: (body: schemas.FilmOrder) => command(server.PUT('/api/film', { body })),
   film: (session: number) => ask(server.GET('/api/sessions/{session}/film', { params: { path: { session } } })),
   /** from the picture on that is shown at `start`, s since the session's start */
   filmPart: (session: number, start: number, seconds: number) =>

@@ -7,6 +7,7 @@ from pydantic import BaseModel, Field
 from sqlmodel import col, func, select
 
 from server.library.config import SessionsConfig
+from server.platform.disk_space import free_bytes
 from server.platform.models import SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -68,6 +69,16 @@ def measure(store: Store, settings: Settings) -> Storage:
         keep_days=rules.keep_days,
         keep_free=rules.keep_free,
     )
+
+
+def free_for_recordings(store: Store, settings: Settings) -> int:
+    """Return the bytes that recordings may take before older ones make room. Raise StoreError."""
+    with store.read() as database:
+        connection = database.connection()
+        pages = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
+        size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
+    reserved = int(settings.section(SessionsConfig).keep_free * GIGABYTE)
+    return max(0, free_bytes(settings.data.path) + int(pages * size) - reserved)
 
 
 def _bytes(path: Path) -> int:

@@ -120,6 +120,8 @@ class DataFolder:
         """Your own missions: a folder each, with their versions."""
         self.wall_clock = path / "wall-clock.json"
         """The last known time (platform/wall_clock.py)."""
+        self.film = path / "film.json"
+        """The choice of the film that people have made, and its sizes (features/film/choice.py)."""
         self.reserve = path / RESERVE
         """Room on the disk that is given up for deletions (platform/disk_reserve.py)."""
         self.config = path / "robot.toml"

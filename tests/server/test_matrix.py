@@ -127,6 +127,8 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/sessions/{session}/restore"): "operator",
     ("POST", "/api/sessions/{session}/purge"): "operator",
     ("GET", "/api/sessions/{session}/thumbnail"): "viewer",
+    ("GET", "/api/film"): "viewer",
+    ("PUT", "/api/film"): "operator",
     ("GET", "/api/sessions/{session}/film"): "viewer",
     ("GET", "/api/sessions/{session}/film/part"): "viewer",
     ("GET", "/api/sessions/{session}/snapshots"): "viewer",

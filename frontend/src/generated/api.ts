@@ -113,6 +113,10 @@ export interface paths {
     "/api/exports/{export}/file": {
         get: operations["downloadExport"];
     };
+    "/api/film": {
+        get: operations["getFilmPlan"];
+        put: operations["chooseFilm"];
+    };
     "/api/firmware": {
         get: operations["getFirmwareUpload"];
         post: operations["uploadFirmware"];
@@ -1205,6 +1209,34 @@ export interface components {
             pictures: number;
             spans: components["schemas"]["FilmSpan"][];
         };
+        /** @description The choice of a film: for the session that records, and those to come. */
+        FilmOrder: {
+            /** @enum {string} */
+            quality: "low" | "medium" | "high";
+            /** @description pictures a second; at most the stream's */
+            rate: number;
+            /** @description true: sessions are filmed */
+            record: boolean;
+        };
+        /** @description The choice of a film that is in force, and the space that films need. */
+        FilmPlan: {
+            /** @enum {string} */
+            coding: "h264" | "jpeg";
+            /** @description true where the bytes are those of this robot's films */
+            measured: boolean;
+            picture_bytes: components["schemas"]["PictureBytes"];
+            /** @enum {string} */
+            quality: "low" | "medium" | "high";
+            /** @description pictures a second */
+            rate: number;
+            /** @description pictures a second of the camera's stream */
+            rate_max: number;
+            record: boolean;
+            /** @description the reason for which nothing is filmed, whatever is chosen; or empty */
+            refusal: string;
+            /** @description bytes of the disk that are free for recordings, above `keep_free` */
+            room: number;
+        };
         /** @description A time without a gap, s since the session's start. */
         FilmSpan: {
             end: number;
@@ -1865,6 +1897,12 @@ export interface components {
             /** @description a JPEG file, in base64 */
             mask: string;
             share: number;
+        };
+        /** @description Bytes of one picture of a film, by quality. */
+        PictureBytes: {
+            high: number;
+            low: number;
+            medium: number;
         };
         /** @description A panel, and its position in columns and rows of the grid from the upper left corner. */
         PlacedPanel: {
@@ -2960,6 +2998,8 @@ export type Figure = components['schemas']['Figure'];
 export type FigureMark = components['schemas']['FigureMark'];
 export type FigureMeaning = components['schemas']['FigureMeaning'];
 export type FilmDescription = components['schemas']['FilmDescription'];
+export type FilmOrder = components['schemas']['FilmOrder'];
+export type FilmPlan = components['schemas']['FilmPlan'];
 export type FilmSpan = components['schemas']['FilmSpan'];
 export type FinReading = components['schemas']['FinReading'];
 export type FinTurn = components['schemas']['FinTurn'];
@@ -3030,6 +3070,7 @@ export type ParametersCommand = components['schemas']['ParametersCommand'];
 export type PartHealth = components['schemas']['PartHealth'];
 export type PickPlace = components['schemas']['PickPlace'];
 export type PickedColour = components['schemas']['PickedColour'];
+export type PictureBytes = components['schemas']['PictureBytes'];
 export type PlacedPanel = components['schemas']['PlacedPanel'];
 export type PredictedChannel = components['schemas']['PredictedChannel'];
 export type PreviousFirmware = components['schemas']['PreviousFirmware'];
@@ -3708,6 +3749,28 @@ export interface operations {
                     "application/octet-stream": unknown;
                 };
             };
+        };
+    };
+    getFilmPlan: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["FilmPlan"];
+                };
+            };
+        };
+    };
+    chooseFilm: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FilmOrder"];
+            };
+        };
+        responses: {
+            204: { content?: never };
         };
     };
     getFirmwareUpload: {

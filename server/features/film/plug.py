@@ -9,8 +9,7 @@ from typing import Any
 from robot_runtime.contract.commands import FilmCommand
 from robot_runtime.errors import RefusedError
 from server.feature import Plug
-from server.features.film.config import FilmConfig
-from server.platform.settings import Settings
+from server.features.film.choice import FilmChoice
 from server.recording.recorder import Recorder
 from server.stream.bridge import Bridge, RuntimeSilentError
 from server.stream.hub import Hub
@@ -24,39 +23,44 @@ RENEWAL_SECONDS = 5.0
 
 
 class FilmPlug(Plug):
-    """The plug that has a recording session filmed: it says so at its begin, its end and in between."""
+    """The plug that has a recording session filmed: it says so at its begin, at changes, and in between."""
 
-    def __init__(self, settings: Settings, recorder: Recorder, bridge: Bridge, hub: Hub) -> None:
-        self._config = settings.section(FilmConfig)
+    def __init__(self, choice: FilmChoice, recorder: Recorder, bridge: Bridge, hub: Hub) -> None:
+        self._choice = choice
         self._recorder = recorder
         self._bridge = bridge
         self._changed = asyncio.Event()
+        self._recording = False
         self._filming = False
-        self._is_on = self._config.record and settings.robot.profile != "lean"
-        if self._is_on:
+        if not choice.refusal:
+            choice.changed = self._changed.set
             hub.listeners.append(self._see)
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
-        """Have every session filmed."""
-        return (self._run(),) if self._is_on else ()
+        """Have sessions filmed as it is chosen."""
+        return () if self._choice.refusal else (self._run(),)
 
     def _see(self, message: dict[str, Any]) -> None:
-        if message["op"] == "session" and (message["recording"] is not None) != self._filming:
+        if message["op"] == "session" and (message["recording"] is not None) != self._recording:
             self._changed.set()
 
     async def _run(self) -> None:
         while True:
             self._changed.clear()
             recording = self._recorder.session is not None
-            if recording or self._filming:
-                await self._tell(LEASE_SECONDS if recording else 0.0)
-            self._filming = recording
+            films = recording and self._choice.now.record
+            if films or self._filming:
+                await self._tell(LEASE_SECONDS if films else 0.0)
+            if self._filming and not films:
+                await asyncio.to_thread(self._choice.store_sizes)
+            self._recording, self._filming = recording, films
             with suppress(TimeoutError):
                 async with asyncio.timeout(RENEWAL_SECONDS):
                     await self._changed.wait()
 
     async def _tell(self, seconds: float) -> None:
-        command = FilmCommand(seconds=seconds, rate=self._config.rate, quality=self._config.quality)
+        choice = self._choice.now
+        command = FilmCommand(seconds=seconds, rate=choice.rate, quality=choice.quality)
         # A runtime that does not answer is told again.
         with suppress(RuntimeSilentError, RefusedError):
             await self._bridge.command(command.policy.name, command.payload())

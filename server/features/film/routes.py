@@ -1,10 +1,14 @@
-"""The film of a session: what there is, and parts of it."""
+"""The film: the choice of it, what a session has of it, and parts."""
 
 from typing import Annotated
 
 from fastapi import Query
 from fastapi.responses import Response
 
+from server.features.film.choice import FilmChoice
+from server.features.film.config import FilmConfig
+from server.features.film.schemas import FilmOrder, FilmPlan, PictureBytes
+from server.http.dependencies import Provided
 from server.http.heavy_requests import RecordingTurn, TooManyHeavyError
 from server.http.operations import Operations
 from server.http.sign_in.policy import Need
@@ -18,11 +22,39 @@ from server.library.film import (
     film_part,
 )
 from server.library.opening import Moment, OpenRecording
+from server.library.storage import free_for_recordings
+from server.platform.settings import Settings
+from server.platform.store import Store
 from server.recording.session import UnknownSessionError
 
 FILM_START = "Film-Start"
 
 router = Operations(prefix="/api", tags=["sessions"])
+
+
+@router.operation("GET /film", Need.VIEWER)
+def get_film_plan(
+    choice: Provided[FilmChoice], store: Provided[Store], settings: Provided[Settings]
+) -> FilmPlan:
+    """Return the choice of a film that is in force, and the space that films need."""
+    now = choice.now
+    return FilmPlan(
+        record=now.record,
+        rate=min(now.rate, choice.rate_max),
+        quality=now.quality,
+        rate_max=choice.rate_max,
+        coding=choice.coding,
+        refusal=choice.refusal,
+        picture_bytes=PictureBytes(**choice.picture_bytes),
+        measured=choice.is_measured,
+        room=free_for_recordings(store, settings),
+    )
+
+
+@router.operation("PUT /film", Need.OPERATOR, status_code=204)
+async def choose_film(choice: Provided[FilmChoice], body: FilmOrder) -> None:
+    """Choose whether and how sessions are filmed: the one that records at once, and those to come."""
+    await choice.change(FilmConfig(record=body.record, rate=body.rate, quality=body.quality))
 
 
 _REFUSALS = (UnknownSessionError, NoFilmError, CodecMissingError, TooManyHeavyError)

@@ -5,6 +5,7 @@ import base64
 import json
 import sys
 import time
+from dataclasses import replace
 from io import BytesIO
 from itertools import accumulate, pairwise
 from pathlib import Path
@@ -25,7 +26,7 @@ from robot_runtime.vision.film import JpegFilmCoder, open_coder
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
-from server.features.film import plug
+from server.features.film import choice, plug
 from server.features.film.config import FilmConfig
 from server.features.film.plug import LEASE_SECONDS
 from server.library.content import Recording
@@ -213,6 +214,61 @@ async def test_no_film_is_asked_for_where_robot_toml_does_not_say_so(served: Ser
     session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
     await served.api.post(f"/sessions/{session}/stop")
     assert served.runtime.filmed == []
+
+
+async def test_the_choice_is_shown_with_its_space_and_holds_from_now_on(settings: Settings) -> None:
+    order = {"record": True, "rate": 5.0, "quality": "high"}
+    async with serve(settings) as served:
+        plan = (await served.api.get("/film")).json()
+        assert (plan["record"], plan["rate"], plan["quality"]) == (False, 15.0, "medium")
+        assert plan["coding"] == "h264"
+        assert not plan["measured"]
+        assert plan["picture_bytes"]["low"] < plan["picture_bytes"]["medium"] < plan["picture_bytes"]["high"]
+        await served.api.post("/sessions", json={"name": "Dive"})
+        for wrong in ({"rate": 1.0}, {"quality": "best"}, {"record": "yes"}, {"more": 1}):
+            assert (await served.api.put("/film", json=order | wrong)).status_code == 422
+        assert (await served.api.put("/film", json=order)).status_code == 204
+        await until(lambda: bool(served.runtime.filmed), "the film to be asked for")
+        assert served.runtime.filmed[-1] == {"seconds": LEASE_SECONDS, "rate": 5.0, "quality": "high"}
+        assert (await served.api.put("/film", json=order | {"record": False})).status_code == 204
+        await until(lambda: served.runtime.filmed[-1]["seconds"] == 0.0, "the film to be ended")
+        assert (await served.api.put("/film", json=order)).status_code == 204
+    async with serve(settings) as served:
+        plan = (await served.api.get("/film")).json()
+        assert (plan["record"], plan["rate"], plan["quality"]) == (True, 5.0, "high")
+
+
+async def test_the_space_is_that_of_this_robots_own_films(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(choice, "PICTURES_MEASURED", COUNT)
+    pictures = h264(100.0)
+    async with serve(settings.with_section(FilmConfig(record=True, quality="medium"))) as served:
+        usual = (await served.api.get("/film")).json()["picture_bytes"]
+        await record(served, pictures)
+        await until(lambda: settings.data.film.exists(), "the size to be stored")
+        plan = (await served.api.get("/film")).json()
+    size = sum(len(picture) for _, picture in pictures) / COUNT
+    assert plan["measured"]
+    assert plan["picture_bytes"]["medium"] == pytest.approx(size)
+    assert plan["picture_bytes"]["high"] == pytest.approx(size * usual["high"] / usual["medium"])
+
+
+async def test_in_the_lean_profile_nothing_is_filmed_and_it_says_why(settings: Settings) -> None:
+    lean = replace(settings, robot=replace(settings.robot, profile="lean")).with_section(
+        FilmConfig(record=True)
+    )
+    async with serve(lean) as served:
+        plan = (await served.api.get("/film")).json()
+        assert not plan["record"]
+        assert "lean profile" in plan["refusal"]
+
+
+async def test_a_damaged_choice_falls_back_to_that_of_robot_toml(settings: Settings) -> None:
+    settings.data.film.parent.mkdir(parents=True, exist_ok=True)
+    settings.data.film.write_text('{"choice": {"record": "perhaps"}}')
+    async with serve(settings) as served:
+        assert not (await served.api.get("/film")).json()["record"]
 
 
 async def test_pages_and_their_history_are_not_sent_the_film(served: Served) -> None:
