@@ -311,7 +311,7 @@ describe('Player', () => {
   });
 
   it('goes from marker to marker', async () => {
-    const at = (time: number) => ({ id: time, time, text: '', made: '2026-11-21T10:00:00Z' });
+    const at = (time: number) => ({ id: time, time, text: '', name: '', made: '2026-11-21T10:00:00Z' });
     session.made = { markers: [at(10), at(20)] };
     await player.open(15);
     player.marked(at(12));

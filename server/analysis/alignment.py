@@ -6,6 +6,7 @@ from pydantic import Field
 
 from server.analysis.moments import ControlHistory
 from server.http.request_body import RequestBody
+from server.library.bookmarks import name_note
 from server.library.missions import RecordedMission
 from server.library.timeline import Moment
 
@@ -15,7 +16,7 @@ class Align(RequestBody):
 
     by: Literal["start", "armed", "set_point", "marker", "mission"] = "start"
     number: Annotated[int, Field(ge=1, le=1000, description="number of the set-point step")] = 1
-    marker: Annotated[str, Field(max_length=500, description="its text; the first match counts")] = ""
+    marker: Annotated[str, Field(max_length=500, description="its name; the first match counts")] = ""
     step: Annotated[
         str,
         Field(pattern=r"^(\d{1,3}(\.\d{1,3}){0,7})?$", description="of the mission, as “3.1.2”"),
@@ -45,9 +46,9 @@ def find_moment(
             raise NoMomentError(_too_few(align.number, len(steps)))
         return steps[align.number - 1][0]
     if align.by == "marker":
-        sought = align.marker.strip().casefold()
+        sought = name_note(align.marker).casefold()
         for bookmark in bookmarks:
-            if bookmark.text.strip().casefold() == sought:
+            if bookmark.text.casefold() == sought:
                 return bookmark.time
         raise NoMomentError(f"This session has no bookmark “{align.marker}”.")
     if align.by == "mission":

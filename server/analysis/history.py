@@ -17,6 +17,7 @@ from server.analysis.moments import (
     Span,
 )
 from server.analysis.samples import Samples
+from server.library.bookmarks import name_note
 from server.library.content import Recording, depth_loop
 from server.library.crafts import read_crafts, which_water
 from server.library.timeline import Moment
@@ -75,7 +76,7 @@ def read_bookmarks(store: Reader, recording: Recording) -> list[Moment]:
     query = select(BookmarkRow).where(BookmarkRow.session_id == row.id).order_by(col(BookmarkRow.time))
     with store.read() as database:
         return [
-            Moment(bookmark.time - row.started_steady, "marker", "info", bookmark.text)
+            Moment(bookmark.time - row.started_steady, "marker", "info", name_note(bookmark.text))
             for bookmark in database.exec(query)
         ]
 

@@ -1,4 +1,4 @@
-"""Bookmarks: moments of a session with a text, made while it records or later."""
+"""Bookmarks: moments of a session, each with a note if somebody wrote one, made while it records or later."""
 
 from datetime import UTC, datetime
 from time import time
@@ -7,12 +7,15 @@ from sqlalchemy import Connection, delete, update
 from sqlmodel import Session, col, func, select
 
 from robot_runtime.clock import Clock
-from server.library.schemas import SHOWN_MAX, Bookmark
+from server.library.schemas import NOTES_MAX, SHOWN_MAX, Bookmark
 from server.platform.errors import NotFoundError
 from server.platform.models import BookmarkRow, SessionRow
 from server.platform.store import Store, insert_row
 from server.recording.recorder import Recorder
 from server.recording.session import SessionStateError, require
+
+NAME_MAX = 500
+"""Characters of a bookmark's name."""
 
 
 class UnknownBookmarkError(NotFoundError):
@@ -23,7 +26,8 @@ class Bookmarks:
     """The bookmarks of all sessions. Times are in s since the session's start.
 
     Every method raises StoreError, UnknownSessionError, UnknownBookmarkError, and SessionStateError for a
-    time beyond the session's end, and where the session has `SHOWN_MAX` already.
+    time beyond the session's end, and where the session would have more than `SHOWN_MAX` bookmarks, or
+    `NOTES_MAX` characters of notes.
     """
 
     def __init__(self, store: Store, clock: Clock, recorder: Recorder) -> None:
@@ -38,7 +42,7 @@ class Bookmarks:
         def write(connection: Connection) -> Bookmark:
             start, duration = _span(connection, session)
             steady = _resolve(moment, start, duration, now)
-            _require_room(connection, session)
+            _require_room(connection, session, text)
             made = time()
             values = {"session_id": session, "time": steady, "text": text, "made": made}
             number = insert_row(connection, BookmarkRow, values)
@@ -59,7 +63,7 @@ class Bookmarks:
             )
             if steady < start or connection.execute(there).first() is not None:
                 return False
-            _require_room(connection, session)
+            _require_room(connection, session, text)
             values = {"session_id": session, "time": steady, "text": text, "made": time()}
             insert_row(connection, BookmarkRow, values)
             return True
@@ -67,7 +71,7 @@ class Bookmarks:
         return await self._store.write(write)
 
     async def change(self, session: int, mark: int, moment: float | None, text: str | None) -> Bookmark:
-        """Change time or text of a bookmark; None leaves it unchanged."""
+        """Change time or note of a bookmark; None leaves it unchanged."""
         now = self._now(session)
 
         def write(connection: Connection) -> Bookmark:
@@ -76,6 +80,8 @@ class Bookmarks:
             if moment is not None:
                 row.time = _resolve(moment, start, duration, now)
             if text is not None:
+                if len(text) > len(row.text):
+                    _require_characters(connection, session, len(text) - len(row.text))
                 row.text = text
             connection.execute(
                 update(BookmarkRow).where(col(BookmarkRow.id) == mark).values(time=row.time, text=row.text)
@@ -109,7 +115,15 @@ def select_bookmarks(database: Session, session: int | None, start: float) -> li
 
 
 def _describe(number: int, time: float, text: str, made: float) -> Bookmark:
-    return Bookmark(id=number, time=time, text=text, made=datetime.fromtimestamp(made, UTC))
+    return Bookmark(
+        id=number, time=time, text=text, name=name_note(text), made=datetime.fromtimestamp(made, UTC)
+    )
+
+
+def name_note(text: str) -> str:
+    """Return the name of a bookmark: its note's first line, without what makes it a heading in Markdown."""
+    first, *_ = text.strip().splitlines() or [""]
+    return first.lstrip("#").strip()[:NAME_MAX]
 
 
 def _find_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
@@ -122,10 +136,20 @@ def _find_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
     return BookmarkRow(id=mark, session_id=session, time=span.time, text=span.text, made=span.made)
 
 
-def _require_room(connection: Connection, session: int) -> None:
+def _require_room(connection: Connection, session: int, text: str) -> None:
     count = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == session)
     if connection.execute(count).scalar_one() >= SHOWN_MAX:
         raise SessionStateError(f"This session has {SHOWN_MAX} bookmarks, the most it may. Remove one first.")
+    _require_characters(connection, session, len(text))
+
+
+def _require_characters(connection: Connection, session: int, more: int) -> None:
+    lengths = select(func.total(func.length(BookmarkRow.text))).where(BookmarkRow.session_id == session)
+    if connection.execute(lengths).scalar_one() + more > NOTES_MAX:
+        raise SessionStateError(
+            f"The notes at this session's bookmarks would have more than {NOTES_MAX} characters, the most "
+            "they may. Shorten or remove one first."
+        )
 
 
 def _span(connection: Connection, session: int) -> tuple[float, float]:

@@ -63,7 +63,7 @@ class Listing:
         before: int | None = None,
         limit: int = PAGE,
     ) -> SessionPage:
-        """Return sessions with all words of `search` in name, note, tags or scenario, and all tags; newest
+        """Return sessions with all words of `search` in name, notes, tags or scenario, and all tags; newest
         first.
 
         With `deleted` those in the bin instead; with `before` only those of lower numbers.
@@ -170,7 +170,8 @@ def _conditions(
     texts = func.fold(col(row.name) + "\n" + col(row.note) + "\n" + col(row.scenario_name))
     for word in fold(search).split():
         in_tags = tagged.where(func.instr(func.fold(SessionTag.tag), word) > 0)
-        yield or_(func.instr(texts, word) > 0, col(row.id).in_(in_tags))
+        in_notes = select(BookmarkRow.session_id).where(func.instr(func.fold(BookmarkRow.text), word) > 0)
+        yield or_(func.instr(texts, word) > 0, col(row.id).in_(in_tags), col(row.id).in_(in_notes))
 
 
 def _topics(

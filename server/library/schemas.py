@@ -12,19 +12,25 @@ from server.recording.schemas import GapKind, Session
 SHOWN_MAX = 2000
 """Bookmarks, and gaps, that an answer about one session holds."""
 
+NOTE_MAX = 10_000
+"""Characters of a note."""
+NOTES_MAX = 1_000_000
+"""Characters of all notes at the bookmarks of a session: an answer has all of them."""
+
 Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
-Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=10_000)]
+Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=NOTE_MAX)]
 Tag = Annotated[
     str, StringConstraints(strip_whitespace=True, min_length=1, max_length=40, pattern=r"^[^,]+$")
 ]
 
 
 class Bookmark(BaseModel):
-    """A moment of a session with a text."""
+    """A moment of a session, with a note if somebody wrote one."""
 
     id: int
     time: float = Field(description="s since the session's start")
-    text: str
+    text: str = Field(description="the note, in Markdown; empty without one")
+    name: str = Field(description="the note's first line, for lists and flags")
     made: datetime = Field(description="UTC")
 
 
@@ -105,19 +111,18 @@ class NewSession(RequestBody):
     note: Note = ""
 
 
-Text = Annotated[str, StringConstraints(strip_whitespace=True, max_length=500)]
 Moment = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
 class NewBookmark(RequestBody):
-    """A new bookmark; its time in s since the session's start, or null for now."""
+    """A new bookmark; its time in s since the session's start, or null for now. `text` is Markdown."""
 
     time: Moment | None = None
-    text: Text = ""
+    text: Note = ""
 
 
 class BookmarkChanges(RequestBody):
     """Changes of a bookmark; null leaves a field unchanged."""
 
     time: Moment | None = None
-    text: Text | None = None
+    text: Note | None = None

@@ -63,7 +63,7 @@ class SessionTag(SQLModel, table=True):
 
 
 class BookmarkRow(SQLModel, table=True):
-    """A bookmark: a moment (s, steady clock) with a text, and when it was made (UTC, s since 1970)."""
+    """A bookmark: a moment (s, steady clock), its note (Markdown), when it was made (UTC, s since 1970)."""
 
     __tablename__ = "marker"
     __table_args__ = (NEVER_AGAIN,)

@@ -69,7 +69,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
 
     page.keyboard.press("Shift+ArrowLeft")
     page.get_by_role("button", name="Mark", exact=True).click()
-    page.get_by_label(re.compile("^Bookmark at 00:00")).fill("the beginning")
+    page.get_by_label(re.compile("^Note at 00:00")).fill("the beginning")
     page.keyboard.press("Enter")
     expect(page.get_by_role("button", name="Bookmark the beginning")).to_be_attached()
     marks = stack.api.get(f"/sessions/{session}/timeline").json()["markers"]

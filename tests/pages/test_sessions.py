@@ -21,8 +21,8 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
 
     page.get_by_role("link", name="Operate").click()
     page.keyboard.press("m")
-    page.get_by_role("button", name="Add text").click()
-    page.get_by_label("Text of the bookmark").fill("bubbles")
+    page.get_by_role("button", name="Add note").click()
+    page.get_by_label(re.compile("^Note at")).fill("bubbles")
     page.get_by_role("button", name="Save").click()
     page.get_by_role("button", name=re.compile("^REC")).click()
     page.get_by_role("button", name="Stop recording").click()
@@ -31,7 +31,7 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
 
     page.get_by_role("link", name="Sessions").click()
     page.get_by_role("link", name="hover", exact=True).click()
-    expect(page.get_by_role("region", name="Bookmarks")).to_contain_text("bubbles")
+    expect(page.get_by_role("region", name="Notes")).to_contain_text("bubbles")
     page.get_by_role("button", name="Edit", exact=True).click()
     page.get_by_label("Name", exact=True).last.fill("hover in a current")
     page.get_by_label("Note", exact=True).last.fill("0.1 m/s from the north")

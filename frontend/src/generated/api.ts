@@ -483,7 +483,7 @@ export interface components {
              */
             by: "start" | "armed" | "set_point" | "marker" | "mission";
             /**
-             * @description its text; the first match counts
+             * @description its name; the first match counts
              * @default
              */
             marker: string;
@@ -558,7 +558,7 @@ export interface components {
             /** @enum {string} */
             pose: "level" | "nose_up" | "right_down";
         };
-        /** @description A moment of a session with a text. */
+        /** @description A moment of a session, with a note if somebody wrote one. */
         Bookmark: {
             id: number;
             /**
@@ -566,6 +566,9 @@ export interface components {
              * @description UTC
              */
             made: string;
+            /** @description the note's first line, for lists and flags */
+            name: string;
+            /** @description the note, in Markdown; empty without one */
             text: string;
             /** @description s since the session's start */
             time: number;
@@ -1734,7 +1737,7 @@ export interface components {
             text: string;
             time: number;
         };
-        /** @description A new bookmark; its time in s since the session's start, or null for now. */
+        /** @description A new bookmark; its time in s since the session's start, or null for now. `text` is Markdown. */
         NewBookmark: {
             text?: string;
             time?: number | null;
@@ -4653,7 +4656,7 @@ export interface operations {
     listSessions: {
         parameters: {
             query?: {
-                /** @description words that name, note, tags or scenario have */
+                /** @description words that name, notes, tags or scenario have */
                 search?: string;
                 /** @description tags that they have, all of them */
                 tag?: string[] | null;

@@ -103,8 +103,6 @@ export const parts = {
     button: 'Mark this moment',
     hint: 'Adds a bookmark (key M)',
     marked: (time: string) => `Marked ${time}`,
-    addText: 'Add text',
-    text: 'Text of the bookmark',
   },
   picker: {
     search: 'Search signals',

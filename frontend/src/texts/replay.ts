@@ -34,8 +34,6 @@ export const replay = {
   },
   mark: {
     button: 'Mark',
-    hint: 'Add a bookmark at this time',
-    label: (time: string) => `Bookmark at ${time}`,
-    placeholder: 'Text',
+    hint: 'Add a note at this moment',
   },
 } as const;

@@ -103,14 +103,6 @@ export const sessions = {
     keep: 'Keep permanently',
     keepHint: 'Automatic deletion skips this session',
   },
-  bookmarks: {
-    title: 'Bookmarks',
-    first: (shown: string, all: string) => `The first ${shown} of ${all} bookmarks. An archive has all.`,
-    none: 'No bookmarks. Add one while recording (Mark button or key M) or during replay.',
-    noText: 'no text',
-    edit: (time: string) => `Edit bookmark at ${time}`,
-    remove: (time: string) => `Remove bookmark at ${time}`,
-  },
   facts: {
     title: 'Details',
     robot: 'Robot',

@@ -94,7 +94,7 @@ class ArchivedBookmark(_Strict):
     """The columns of a bookmark (see `BookmarkRow`)."""
 
     time: Time
-    text: Annotated[str, Field(max_length=1000)]
+    text: Words
     made: Date
 
 

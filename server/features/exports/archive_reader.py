@@ -38,6 +38,7 @@ from server.features.exports.archive_models import (
     ArchivedGap,
 )
 from server.features.exports.archive_samples import SPAN_MAX, check_chunk, check_document
+from server.library.schemas import NOTES_MAX
 from server.platform.errors import InvalidError
 from server.recording.schemas import GapKind
 
@@ -253,3 +254,5 @@ def _check_session(content: ArchivedDocument, described: dict[str, Any]) -> None
     times = [marker.time for marker in content.markers] + [gap.time for gap in content.gaps]
     if any(abs(time - session.started_steady) > SPAN_MAX for time in times):
         raise ValueError("a bookmark or a gap is far from the session")
+    if sum(len(marker.text) for marker in content.markers) > NOTES_MAX:
+        raise ValueError(f"the notes at its bookmarks have more than {NOTES_MAX} characters")

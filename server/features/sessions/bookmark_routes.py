@@ -23,7 +23,7 @@ NO_BOOKMARK = {404: "There is no such session, or it has no such bookmark"}
 async def add_mark(
     bookmarks: Provided[Bookmarks], catalogue: Provided[Catalogue], session: Identifier, body: NewBookmark
 ) -> Bookmark:
-    """Bookmark a moment; without a time it is now.
+    """Bookmark a moment, with a note if one is given; without a time it is now.
 
     Refused beyond the session's end, and without a time after the session has ended.
     """
@@ -36,7 +36,7 @@ async def add_mark(
 async def change_mark(
     bookmarks: Provided[Bookmarks], session: Identifier, mark: Identifier, body: BookmarkChanges
 ) -> Bookmark:
-    """Change the time or the text of a bookmark."""
+    """Change the time or the note of a bookmark."""
     return await bookmarks.change(session, mark, body.time, body.text)
 
 

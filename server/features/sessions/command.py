@@ -43,7 +43,7 @@ def sessions() -> None:
 def list_sessions(settings: Settings, search: tuple[str, ...], tag: tuple[str, ...], deleted: bool) -> None:
     """List sessions, newest first.
 
-    With WORDS, only those that have each of them in name, note, tags or scenario.
+    With WORDS, only those that have each of them in name, notes, tags or scenario.
     """
     with _open_listing(settings) as listing:
         for page in listing.pages(" ".join(search), tag, deleted=deleted):
@@ -181,7 +181,9 @@ def _describe(session: "SessionDetail") -> str:
         f"software {session.software or '-'}",
         f"craft: {describe_crafts(session.water, session.crafts) or '-'}",
     ]
-    lines += [f"  mark  {mark.time:10.1f} s  {mark.text}" for mark in session.marks]
+    for mark in session.marks:
+        note = ("\n" + " " * 22).join(mark.text.splitlines())
+        lines.append(f"  mark  {mark.time:10.1f} s  {note}")
     if session.markers > len(session.marks):
         lines.append(f"  {session.markers - len(session.marks)} more bookmarks")
     lines += [f"  gap   {gap.time:10.1f} s  {gap.topic}: {gap.kind}, {gap.missed}" for gap in session.gaps]

@@ -54,7 +54,7 @@ def list_sessions(
     request: Request,
     response: Response,
     search: Annotated[
-        str, Query(max_length=200, description="words that name, note, tags or scenario have")
+        str, Query(max_length=200, description="words that name, notes, tags or scenario have")
     ] = "",
     tag: Annotated[list[str] | None, Query(description="tags that they have, all of them")] = None,
     origin: Origin | None = None,

@@ -121,6 +121,34 @@ async def test_bookmarks_are_set_live_and_later(served: Served) -> None:
     assert (await api.get("/sessions")).json()[1]["markers"] == 1
 
 
+async def test_the_note_of_a_bookmark_has_a_name_and_is_found_by_its_words(served: Served) -> None:
+    session = await record(served, "dive")
+    await record(served, "another")
+    path = f"/sessions/{session}/markers"
+    made = (await served.api.post(path, json={"time": 0, "text": "# Depth lost\n\nat the *stairs*"})).json()
+    assert (made["name"], made["text"]) == ("Depth lost", "# Depth lost\n\nat the *stairs*")
+    assert await names(served, search="stairs depth") == ["dive"]
+    await served.api.patch(f"{path}/{made['id']}", json={"text": "nothing"})
+    assert await names(served, search="stairs") == []
+
+
+async def test_a_note_that_is_too_long_is_refused_with_the_most_it_may_have(served: Served) -> None:
+    session = await record(served, "dive")
+    path = f"/sessions/{session}/markers"
+    made = (await served.api.post(path, json={"time": 0, "text": "short"})).json()
+    for length, status, limit in [(10_001, 422, "10000"), (1_000_000, 413, "65536 bytes")]:
+        text = "a" * length
+        for answer in [
+            await served.api.post(path, json={"time": 0, "text": text}),
+            await served.api.patch(f"{path}/{made['id']}", json={"text": text}),
+            await served.api.patch(f"/sessions/{session}", json={"note": text}),
+        ]:
+            assert answer.status_code == status
+            assert limit in str(answer.json()["detail"])
+    marks = (await served.api.get(f"/sessions/{session}")).json()["marks"]
+    assert [mark["text"] for mark in marks] == ["short"]
+
+
 async def test_a_session_lists_its_contents(settings: Settings, served: Served) -> None:
     served.runtime.publish(state_block(0, set_point_default=0.7))
     await until(lambda: served.get(HealthMonitor).state() is not None, "the state")

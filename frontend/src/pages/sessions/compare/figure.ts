@@ -4,7 +4,7 @@ import type { Pointed } from '../../../parts/figures';
 import type { Data, Layout } from 'plotly.js-basic-dist-min';
 import { chartsOf, columnWords, type Chart } from './charts';
 import { compare as texts } from '../../../texts/compare';
-import { sessions as recorded } from '../../../texts/sessions';
+import { notes } from '../../../texts/notes';
 
 export interface Look {
   readonly text: string;
@@ -129,7 +129,7 @@ function frameOf(comparison: Comparison, view: View, look: Look, charts: number)
 function axisTitle({ align }: Comparison): string {
   if (align.by === 'armed') return texts.charts.since.armed;
   if (align.by === 'set_point') return texts.charts.since.step(align.number);
-  if (align.by === 'marker') return texts.charts.since.bookmark(align.marker || recorded.bookmarks.noText);
+  if (align.by === 'marker') return texts.charts.since.bookmark(align.marker || notes.noText);
   if (align.by === 'mission') return texts.charts.since.mission(align.step);
   return texts.charts.since.start;
 }

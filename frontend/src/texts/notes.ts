@@ -1,0 +1,20 @@
+/** Texts of notes: on a session, and at its bookmarks. */
+export const notes = {
+  title: 'Notes',
+  none: 'No notes yet.',
+  noneHint: 'Mark a moment while recording (key M), in a replay, or here.',
+  noText: 'no text',
+  label: 'Note',
+  labelAt: (time: string) => `Note at ${time}`,
+  time: 'Time',
+  add: 'Add note',
+  addAt: (time: string) => `Add note at ${time}`,
+  addNow: 'Add note now',
+  edit: (time: string) => `Edit note at ${time}`,
+  replayFrom: (time: string) => `Replay from ${time}`,
+  remove: (time: string) => `Delete note at ${time}`,
+  first: (shown: string, all: string) => `The first ${shown} of ${all} notes. An archive has all.`,
+  how: 'Markdown: **bold**, - list, [link](address). Ctrl+Enter saves.',
+  quick: 'Enter saves, Shift+Enter begins a line. Markdown.',
+  tooLong: (length: string, most: string) => `This note has ${length} characters, and may have ${most}. Shorten it.`,
+} as const;
