@@ -16,6 +16,7 @@ type AuditQuery = NonNullable<operations['listAudit']['parameters']['query']>;
 type ReportQuery = operations['getComparisonReport']['parameters']['query'];
 export type ExportFormat = schemas.ExportOptions['format'];
 export type ExportCompression = schemas.ExportOptions['compression'];
+export type ExportOverlay = NonNullable<schemas.ExportOptions['overlay']>;
 export type ExportSpreadsheet = schemas.ExportOptions['spreadsheet'];
 export type ExportJob = schemas.Job;
 export type CommTestDocument = schemas.TestDocument;

@@ -51,6 +51,7 @@ describe('an export', () => {
     expect(alike({ format: 'csv', start: null }, { format: 'csv', compression: 'none', period: 0.1 })).toBe(true);
     expect(alike({ format: 'csv', start: 1 }, { format: 'csv' })).toBe(false);
     expect(alike({ format: 'csv-grid', period: 0.2 }, { format: 'csv-grid' })).toBe(false);
+    expect(alike({ format: 'mp4', overlay: 'lines' }, { format: 'mp4' })).toBe(false);
     expect(alike({ format: 'csv', spreadsheet: 'comma' }, { format: 'csv' })).toBe(false);
   });
 });

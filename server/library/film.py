@@ -3,11 +3,13 @@
 Pictures of H.264 are only packed anew. JPEG files, which a robot without PyAV records, are coded first.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from fractions import Fraction
 from io import BytesIO
 from itertools import chain, dropwhile, pairwise
 from math import inf
+from struct import Struct
 from typing import IO, TYPE_CHECKING, Any
 
 from pydantic import BaseModel, Field
@@ -32,6 +34,10 @@ KEY_SECONDS_MAX = 5.0
 """s before a moment within which the key picture is sought from which it can be shown."""
 LAST_SECONDS = 1 / 15
 """s for which the last picture is shown."""
+SUBTITLE_SECONDS = 0.5
+"""s for which one subtitle is shown."""
+_TEXT_BYTES = Struct(">H")
+"""The length before the text of a subtitle (3GPP TS 26.245, 5.17)."""
 _CRF = 23
 """x264's rate factor for pictures that were JPEG files."""
 _MICROSECONDS = 1_000_000
@@ -128,10 +134,53 @@ def as_h264(pictures: Iterable[Picture]) -> Iterator[Picture]:
         yield time, FilmPicture(coder.code(time, frame))
 
 
-def write_mp4(pictures: Iterator[Picture], output: IO[bytes]) -> None:
-    """Write pictures as a fragmented MP4 file that begins with the time of the first, a key picture.
+def decode_film(pictures: Iterable[Picture]) -> "Iterator[tuple[float, av.VideoFrame]]":
+    """Yield time (s) and picture of a film that begins with a key picture; damaged ones are left out.
 
     Raise CodecMissingError.
+    """
+    try:
+        import av
+    except ImportError as problem:
+        raise CodecMissingError from problem
+    decoder: av.VideoCodecContext | None = None
+    unit = Fraction(1, _MICROSECONDS)
+    for time, picture in pictures:
+        if picture.is_jpeg:
+            with suppress(ValueError):
+                yield time, _decode(picture)
+            continue
+        if decoder is None:
+            decoder = _open_decoder()
+        packet = av.Packet(bytes(picture))
+        packet.pts, packet.time_base = round(time * _MICROSECONDS), unit
+        with suppress(av.FFmpegError):
+            yield from _timed(decoder.decode(packet))
+    if decoder is not None:
+        with suppress(av.FFmpegError):
+            yield from _timed(decoder.decode(None))
+
+
+def _timed(frames: "Iterable[av.VideoFrame]") -> "Iterator[tuple[float, av.VideoFrame]]":
+    return (((frame.pts or 0) / _MICROSECONDS, frame) for frame in frames)
+
+
+def _open_decoder() -> "av.VideoCodecContext":
+    import av
+
+    decoder = av.CodecContext.create("h264", "r")
+    assert isinstance(decoder, av.VideoCodecContext)
+    # With more, each picture would come some pictures later.
+    decoder.thread_count = 1
+    return decoder
+
+
+def write_mp4(
+    pictures: Iterator[Picture], output: IO[bytes], subtitle: Callable[[float], str] | None = None
+) -> None:
+    """Write pictures as a fragmented MP4 file that begins with the time of the first, a key picture.
+
+    `subtitle` gives the text that is shown from a time (s, steady clock) on. Raise CodecMissingError.
     """
     try:
         import av
@@ -143,7 +192,8 @@ def write_mp4(pictures: Iterator[Picture], output: IO[bytes]) -> None:
     unit = Fraction(1, _MICROSECONDS)
     with av.open(output, "w", format="mp4", options=_FRAGMENTED) as file:
         stream = file.add_mux_stream("h264", rate=15, width=shown.width, height=shown.height)
-        last = -1
+        texts: Any = None if subtitle is None else file.add_mux_stream("mov_text")
+        last, text_due = -1, origin
         for time, picture in chain([(origin, first)], coded):
             packet = av.Packet(picture)
             packet.stream, packet.time_base = stream, unit
@@ -154,6 +204,15 @@ def write_mp4(pictures: Iterator[Picture], output: IO[bytes]) -> None:
             packet.duration = round(LAST_SECONDS * _MICROSECONDS)
             packet.is_keyframe = picture.is_key
             file.mux(packet)
+            if subtitle is not None and time >= text_due:
+                text_due = time + SUBTITLE_SECONDS
+                text = subtitle(time).encode()
+                shown_text = av.Packet(_TEXT_BYTES.pack(len(text)) + text)
+                shown_text.stream, shown_text.time_base = texts, unit
+                shown_text.pts = shown_text.dts = last
+                shown_text.duration = round(SUBTITLE_SECONDS * _MICROSECONDS)
+                shown_text.is_keyframe = True
+                file.mux(shown_text)
 
 
 def film_part(recording: Recording, start: float, seconds: float) -> tuple[float, bytes]:

@@ -1158,6 +1158,12 @@ export interface components {
             /** @enum {string} */
             format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report" | "mp4";
             /**
+             * @description values over the film of mp4: as subtitles, which a player shows or hides, or as the flight view's lines, drawn into each picture
+             * @default none
+             * @enum {string}
+             */
+            overlay: "none" | "subtitles" | "lines";
+            /**
              * @description s between the lines of csv-grid
              * @default 0.1
              */
@@ -1760,6 +1766,11 @@ export interface components {
             end?: number | null;
             /** @enum {string} */
             format: "csv" | "csv-grid" | "xlsx" | "parquet" | "mcap" | "archive" | "report" | "mp4";
+            /**
+             * @description values over the film of mp4: as subtitles, which a player shows or hides, or as the flight view's lines, drawn into each picture
+             * @enum {string}
+             */
+            overlay?: "none" | "subtitles" | "lines";
             /** @description s between the lines of csv-grid */
             period?: number;
             session: number;

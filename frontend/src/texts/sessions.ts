@@ -161,6 +161,12 @@ export const sessions = {
       lz4: { title: 'LZ4', hint: 'Smaller, and quick to write.' },
       zstd: { title: 'Zstandard', hint: 'The smallest file.' },
     },
+    overlay: 'Values over the picture',
+    overlays: {
+      none: { title: 'None', hint: 'The film as it was recorded.' },
+      subtitles: { title: 'Subtitles', hint: 'A player shows or hides them.' },
+      lines: { title: 'Flight lines', hint: 'Depth, heading, attitude and mode, drawn into each picture.' },
+    },
     create: 'Create file',
     whileRecording: 'The archive is available when the recording has ended.',
     chooseTopic: 'Select at least one topic.',

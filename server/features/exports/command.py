@@ -34,6 +34,11 @@ IMPORT_SECONDS = 3600.0
     help="For csv and csv-grid: as a spreadsheet with this decimal sign reads it.",
 )
 @click.option("--compression", type=click.Choice(("none", "zstd", "lz4")), help="For mcap. Default: none.")
+@click.option(
+    "--overlay",
+    type=click.Choice(("none", "subtitles", "lines")),
+    help="For mp4: values as subtitles, or as lines drawn into the pictures. Default: none.",
+)
 @click.option("-o", "--output", type=FILE, help="Default: a file here, named after the session.")
 @with_settings
 def export_session(settings: Settings, session: int, output: Path | None, **choice: Any) -> None:

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import BinaryIO, NamedTuple
 
-from robot_runtime.contract.topics import FILM
 from server.analysis.schemas import DEFAULT_SIGNALS, REPORT_POINTS, ComparisonQuery
 from server.features.exports.archive import write_archive
+from server.features.exports.film_file import check_overlay, require_film, write_film
 from server.features.exports.grid import write_grid
 from server.features.exports.mcap_file import check_compression, check_mcap, write_mcap
 from server.features.exports.parquet import check_parquet, write_parquet
@@ -13,7 +13,6 @@ from server.features.exports.schemas import ExportOptions, Format
 from server.features.exports.selection import ExportRequestError, ExportSelection
 from server.features.exports.tables import write_tables
 from server.features.exports.workbook import require_sheets, write_workbook
-from server.library.film import film_from, write_mp4
 from server.platform.store import Reader
 
 Write = Callable[[Reader, ExportSelection, BinaryIO], None]
@@ -45,24 +44,6 @@ def write_report(store: Reader, source: ExportSelection, output: BinaryIO) -> No
         sessions=[source.row.id or 0], signals=list(DEFAULT_SIGNALS), points=REPORT_POINTS
     )
     output.write(report.write_report(Comparer(store).compare(query)).encode())
-
-
-def require_film(source: ExportSelection) -> None:
-    """Raise ExportRequestError where there is no film in the range."""
-    if FILM.name not in source.samples:
-        raise ExportRequestError(
-            "The camera was not filmed then. Sessions are filmed where robot.toml says so: [film], "
-            "record = true."
-        )
-
-
-def write_film(_: Reader, source: ExportSelection, output: BinaryIO) -> None:
-    """Write the film of the range as an MP4 file.
-
-    Raise ExportRequestError, NoFilmError, CodecMissingError, StoreError, RecordingError.
-    """
-    require_film(source)
-    write_mp4(film_from(source, source.start, source.end), output)
 
 
 ZIP = "application/zip"
@@ -98,6 +79,10 @@ def check(options: ExportOptions) -> ExportFormat:
         raise ExportRequestError(f"The {options.format} holds the whole session; leave start and end out.")
     if options.spreadsheet != "none" and options.format not in ("csv", "csv-grid"):
         raise ExportRequestError("A spreadsheet's decimal sign is chosen for csv and csv-grid alone.")
+    if options.overlay != "none":
+        if options.format != "mp4":
+            raise ExportRequestError("Subtitles and lines are chosen for mp4 alone.")
+        check_overlay(options.overlay)
     if options.compression != "none":
         if options.format != "mcap":
             raise ExportRequestError("Compression is chosen for mcap alone.")

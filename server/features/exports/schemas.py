@@ -10,6 +10,7 @@ from server.platform.csv_cells import Spreadsheet
 from server.platform.models import IDENTIFIER_MAX
 
 Compression = Literal["none", "zstd", "lz4"]
+Overlay = Literal["none", "subtitles", "lines"]
 Format = Literal["csv", "csv-grid", "xlsx", "parquet", "mcap", "archive", "report", "mp4"]
 State = Literal["waiting", "running", "done", "failed"]
 
@@ -45,6 +46,11 @@ class ExportOptions(RequestBody):
     )
     compression: Compression = Field(
         default="none", description="of the chunks of mcap; zstd and lz4 need their packages"
+    )
+    overlay: Overlay = Field(
+        default="none",
+        description="values over the film of mp4: as subtitles, which a player shows or hides, or as the "
+        "flight view's lines, drawn into each picture",
     )
 
 

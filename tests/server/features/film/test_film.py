@@ -23,6 +23,7 @@ from robot_runtime.contract.film_picture import FilmPicture
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block
 from robot_runtime.vision.film import JpegFilmCoder, open_coder
+from server.features.exports import film_file
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions
 from server.features.exports.selection import ExportSelection
@@ -38,7 +39,7 @@ from server.platform.store import Store
 from server.recording.recorder import Recorder
 from server.recording.session import find_row, new_row
 from tests.film import HEIGHT, RATE, WIDTH, code_numbers, read_film, read_number
-from tests.server.blocks import depth_block, film_block
+from tests.server.blocks import depth_block, film_block, state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
@@ -315,6 +316,79 @@ async def test_the_film_is_exported_as_an_mp4_file(
     whole = await asyncio.to_thread(export, served, filmed[0], tmp_path, format="mp4")
     assert whole == await asyncio.to_thread(export, served, filmed[0], tmp_path, format="mp4")
     assert [number for _, number in read_film(whole)] == list(range(COUNT))
+
+
+async def dive_filmed(served: Served) -> int:
+    """Record a film and the depth samples of the same time, 0.5 m to 0.8 m; return the session's number."""
+    start = now(served) + 1.0
+    served_depths = depth_block(0, 400, start=start)
+    session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
+    served.runtime.publish(served_depths, state_block(0, time=start, armed=True, mode="automatic"))
+    pictures = h264(start)
+    served.runtime.publish(*(film_block(number, *picture) for number, picture in enumerate(pictures)))
+    recorder = served.get(Recorder)
+    while recorder.session is None or recorder.session.samples < COUNT + 401:
+        await recorder.flush()
+    await served.api.post(f"/sessions/{session}/stop")
+    return session
+
+
+def texts_of(mp4: bytes) -> list[tuple[float, str]]:
+    """Return the times (s) and the texts of an MP4 file's subtitles."""
+    with av.open(BytesIO(mp4), "r") as file:
+        return [
+            (float(packet.pts * packet.time_base), bytes(packet)[2:].decode())
+            for packet in file.demux(subtitles=0)
+            if packet.pts is not None and packet.size > 2 and packet.time_base
+        ]
+
+
+async def test_subtitles_say_the_values_of_their_moment(served: Served, tmp_path: Path) -> None:
+    session = await dive_filmed(served)
+    mp4 = await asyncio.to_thread(export, served, session, tmp_path, format="mp4", overlay="subtitles")
+    assert [number for _, number in read_film(mp4)] == list(range(COUNT))
+    texts = texts_of(mp4)
+    assert len(texts) == pytest.approx(COUNT / RATE / 0.5, abs=1)
+    recording = Recording(served.get(Store), find_row(served.get(Store), session))
+    times, columns = recording.columns("depth", ["depth"])
+    first = next(iter(recording.film()))[0]
+    for moment, text in texts:
+        depth = columns["depth"][int(np.searchsorted(times, first + moment + 1e-6, "right")) - 1]
+        assert f"{depth:.2f} m" in text
+        assert "ARMED  automatic" in text
+
+
+async def test_lines_are_drawn_into_every_picture(served: Served, tmp_path: Path) -> None:
+    session = await dive_filmed(served)
+    plain = await asyncio.to_thread(export, served, session, tmp_path, format="mp4")
+    drawn = await asyncio.to_thread(export, served, session, tmp_path, format="mp4", overlay="lines")
+    assert [time for time, _ in read_film(drawn)] == pytest.approx(
+        [time for time, _ in read_film(plain)], abs=1e-5
+    )
+    with av.open(BytesIO(plain), "r") as before, av.open(BytesIO(drawn), "r") as after:
+        for clean, lined in zip(before.decode(video=0), after.decode(video=0), strict=True):
+            apart = np.abs(clean.to_ndarray(format="gray").astype(int) - lined.to_ndarray(format="gray"))
+            # The tape of the depth and its value stand on the right.
+            assert apart[:, WIDTH * 3 // 4 :].max() > 40
+
+
+async def test_values_go_over_a_film_alone(served: Served, filmed: tuple[int, float]) -> None:
+    body = {"session": filmed[0], "format": "csv", "overlay": "lines"}
+    refused = await served.api.post("/exports", json=body)
+    assert (refused.status_code, refused.json()["detail"]) == (
+        422,
+        "Subtitles and lines are chosen for mp4 alone.",
+    )
+
+
+async def test_without_opencv_lines_are_refused_in_words(
+    served: Served, filmed: tuple[int, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(film_file, "find_spec", lambda name: None if name == "cv2" else name)
+    body = {"session": filmed[0], "format": "mp4", "overlay": "lines"}
+    refused = await served.api.post("/exports", json=body)
+    assert refused.status_code == 422
+    assert "cv2 is not installed" in refused.json()["detail"]
 
 
 async def test_tables_have_the_film_beside_them(

@@ -1,5 +1,5 @@
 /** The formats, in the order in which they are offered. */
-import type { ExportCompression, ExportFormat, ExportSpreadsheet, NewExport } from '../../../api';
+import type { ExportCompression, ExportFormat, ExportOverlay, ExportSpreadsheet, NewExport } from '../../../api';
 import { numberText } from '../../../number';
 import { sessions as texts } from '../../../texts/sessions';
 
@@ -42,11 +42,15 @@ export function findTooLong(tables: readonly Length[], duration: number, start: 
 /** Of MCAP, the smallest file last. */
 export const COMPRESSIONS: readonly ExportCompression[] = ['none', 'lz4', 'zstd'];
 
+/** Over a film. */
+export const OVERLAYS: readonly ExportOverlay[] = ['none', 'subtitles', 'lines'];
+
 /** Columns of the joined table where nobody has chosen others; their topics' own clocks are rarely wanted. */
 export const USUAL_COLUMNS = ['depth.depth', 'control.set_point', 'control.output', 'imu.attitude_0', 'imu.attitude_1', 'imu.attitude_2', 'imu.attitude_3', 'status.battery'];
 
-export function titleOf(format: ExportFormat): string {
-  return texts.exporting.formats[format].title;
+export function titleOf({ format, overlay = 'none' }: Pick<NewExport, 'format' | 'overlay'>): string {
+  const { formats, overlays } = texts.exporting;
+  return overlay === 'none' ? formats[format].title : `${formats[format].title}, ${overlays[overlay].title.toLowerCase()}`;
 }
 
 /** Why a range (s) cannot be exported; null: from the beginning, or to the end. */
@@ -56,7 +60,7 @@ export function orderProblem(start: number | null, end: number | null): string {
 
 /** Whether two exports give the same file of an unchanged session; what is left out is null or empty. */
 export function alike(one: Partial<NewExport>, other: Partial<NewExport>): boolean {
-  const facts = ({ format, topics, columns, start, end, period, compression, spreadsheet }: Partial<NewExport>) =>
-    JSON.stringify([format, topics ?? null, columns ?? null, start ?? null, end ?? null, format === 'csv-grid' ? (period ?? 0.1) : null, compression ?? 'none', spreadsheet ?? 'none']);
+  const facts = ({ format, topics, columns, start, end, period, compression, spreadsheet, overlay }: Partial<NewExport>) =>
+    JSON.stringify([format, topics ?? null, columns ?? null, start ?? null, end ?? null, format === 'csv-grid' ? (period ?? 0.1) : null, compression ?? 'none', spreadsheet ?? 'none', overlay ?? 'none']);
   return facts(one) === facts(other);
 }
