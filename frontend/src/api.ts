@@ -201,6 +201,7 @@ export const api = {
 
   scenarios: () => ask(server.GET('/api/scenarios')),
   keepScenario: (text: string, base: string | null) => ask(server.POST('/api/scenarios', { body: { text, base } })),
+  scenarioEvents: () => ask(server.GET('/api/scenarios/events')),
   checkScenario: (text: string) => ask(server.POST('/api/scenarios/check', { body: { text } })),
   startScenario: (body: schemas.ScenarioStart) => ask(server.POST('/api/scenarios/runs', { body })),
   /** this run, or with null the active one and all that wait */
@@ -212,6 +213,7 @@ export const api = {
   checkMission: (text: string) => ask(server.POST('/api/missions/check', { body: { text } })),
   keepMission: (text: string, base: string | null) => ask(server.POST('/api/missions', { body: { text, base } })),
   deleteMission: (name: string) => command(server.DELETE('/api/missions/{name}', { params: { path: { name } } })),
+  missionRuns: (name: string) => ask(server.GET('/api/missions/runs/{name}', { params: { path: { name } } })),
   startMission: (text: string) => ask(robot.POST('/api/missions/start', { body: { text }, fetch: unlessBarred(TIMEOUT_MISSION) })),
   missionTrial: () => ask(server.GET('/api/missions/trial')),
   startMissionTrial: (text: string, seeds: number) => ask(server.POST('/api/missions/trial', { body: { text, seeds } })),

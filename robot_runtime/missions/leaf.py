@@ -144,6 +144,14 @@ class Leaf(MissionNode, ABC):
         """The greatest depth (m) that the step asks for."""
         return 0.0
 
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return the expected duration (s) from this depth (m) on, and the depth at its end, for the plan.
+
+        None: the end depends on what happens, as of a step that has a timeout, unless it says more.
+        """
+        names = {entry.name for entry in fields(self)}
+        return (None if "timeout" in names else getattr(self, "seconds", 0.0)), depth
+
     def check(self, robot: MissionStart) -> str:  # noqa: ARG002 - most leaves need nothing
         """Return the reason why this robot cannot do the step; empty if it can."""
         return ""

@@ -59,6 +59,7 @@ class Listing:
         origin: Origin | None = None,
         *,
         state: State | None = None,
+        scenario: str = "",
         deleted: bool = False,
         before: int | None = None,
         limit: int = PAGE,
@@ -66,9 +67,12 @@ class Listing:
         """Return sessions with all words of `search` in name, notes, tags or scenario, and all tags; newest
         first.
 
-        With `deleted` those in the bin instead; with `before` only those of lower numbers.
+        With `scenario` only its runs; with `deleted` those in the bin instead; with `before` only those of
+        lower numbers.
         """
         chosen = [*_conditions(search, tags, origin, state, deleted=deleted)]
+        if scenario:
+            chosen.append(col(SessionRow.scenario_name) == scenario)
         rest = [] if before is None else [col(SessionRow.id) < before]
         query = select(*_READ).where(*chosen, *rest).order_by(col(SessionRow.id).desc()).limit(limit + 1)
         with self._reader.read() as database:

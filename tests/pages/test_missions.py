@@ -390,7 +390,7 @@ def test_a_dry_run_shows_its_outcomes_as_a_picture_and_where_it_failed(page: Pag
     open_mission(page, site, "tried")
     page.get_by_label("Seeds").fill("3")
     page.get_by_role("button", name="Start the dry run").click()
-    picture = page.get_by_role("img", name=re.compile("^Depth over time of 3 runs; 0 succeeded"))
+    picture = page.get_by_role("img", name=re.compile("^Planned depth.* 3 dry runs over it, of which 0 succ"))
     expect(picture).to_be_visible()
     expect(picture.locator("polyline.failed")).to_have_count(3)
     expect(page.get_by_text("0 of 3", exact=True)).to_be_visible()

@@ -161,6 +161,9 @@ export interface paths {
     "/api/missions/nodes": {
         get: operations["listMissionNodes"];
     };
+    "/api/missions/runs/{name}": {
+        get: operations["listMissionRuns"];
+    };
     "/api/missions/start": {
         post: operations["startMission"];
     };
@@ -277,6 +280,9 @@ export interface paths {
     };
     "/api/scenarios/check": {
         post: operations["checkScenario"];
+    };
+    "/api/scenarios/events": {
+        get: operations["listScenarioEvents"];
     };
     "/api/scenarios/runs": {
         post: operations["startScenario"];
@@ -1143,6 +1149,18 @@ export interface components {
             /** @description along heading 90° */
             y: number;
         };
+        /** @description A field of an event; a `value` is a list or a table, written as TOML. */
+        EventField: {
+            /** @description of a choice; empty otherwise */
+            choices: string[];
+            /** @enum {string} */
+            kind: "number" | "whole" | "text" | "switch" | "choice" | "value";
+            maximum: number | null;
+            meaning: string;
+            minimum: number | null;
+            name: string;
+            required: boolean;
+        };
         /** @description Choice of a session's topics, range and file format. */
         ExportOptions: {
             /** @description such as depth.depth or motor.angle_0; null for all. For csv-grid alone */
@@ -1596,6 +1614,8 @@ export interface components {
         };
         /** @description A mission's problems by entry, or its summary. */
         MissionCheck: {
+            /** @description null if it is not valid */
+            plan: components["schemas"]["MissionPlanned"] | null;
             problems: components["schemas"]["EntryProblem"][];
             summary: components["schemas"]["MissionSummary"] | null;
             /** @description what the TOML says; null where it is no TOML */
@@ -1622,6 +1642,13 @@ export interface components {
         MissionPauseCommand: {
             /** @description false: go on */
             on?: boolean;
+        };
+        /** @description The planned depth over time. */
+        MissionPlanned: {
+            /** @description false: it is longer, and the rest is left out */
+            complete: boolean;
+            /** @description in the order of their beginnings */
+            steps: components["schemas"]["PlannedMissionStep"][];
         };
         /** @description Ends the running steps of the mission as a success. */
         MissionSkipCommand: Record<string, never>;
@@ -1896,6 +1923,23 @@ export interface components {
             state: "ok" | "starting" | "failed" | "absent" | "unknown";
             text: string;
         };
+        /** @description A run of a mission that a session recorded. Times are s since the session's start. */
+        PastMissionRun: {
+            /** @description m */
+            deepest: number;
+            /** @description s of the mission's clock */
+            elapsed: number;
+            end: number;
+            /**
+             * @description still running where the recording lacks its end
+             * @enum {string}
+             */
+            phase: "running" | "paused" | "succeeded" | "failed" | "ended";
+            session: components["schemas"]["Session"];
+            start: number;
+            /** @description how it ended */
+            text: string;
+        };
         /** @description A point of the picture that was clicked. */
         PickPlace: {
             /** @description of the circle that is examined, as a share of the width */
@@ -1927,6 +1971,21 @@ export interface components {
             width: number;
             x: number;
             y: number;
+        };
+        /** @description One doing of a leaf, as it is expected if no step fails. */
+        PlannedMissionStep: {
+            /** @description s since the mission's start */
+            end: number;
+            /** @description m */
+            end_depth: number;
+            /** @description false: its end depends on what happens, and is drawn 5 s on at most */
+            known: boolean;
+            /** @description of the step, as in its summary */
+            path: string;
+            /** @description s since the mission's start */
+            start: number;
+            /** @description m */
+            start_depth: number;
         };
         /** @description A measured signal of the session that was left out, and its prediction; null breaks the lines. */
         PredictedChannel: {
@@ -2157,6 +2216,12 @@ export interface components {
             at: number;
             do: string;
             words: string;
+        };
+        /** @description A kind of event, beside its time. */
+        ScenarioEventKind: {
+            do: string;
+            fields: components["schemas"]["EventField"][];
+            meaning: string;
         };
         /**
          * @description A scenario to run: on the robot in real time, or in simulated time.
@@ -3007,6 +3072,7 @@ export type EndedIdentification = components['schemas']['EndedIdentification'];
 export type EndedRun = components['schemas']['EndedRun'];
 export type EntryProblem = components['schemas']['EntryProblem'];
 export type EstimatedPosition = components['schemas']['EstimatedPosition'];
+export type EventField = components['schemas']['EventField'];
 export type ExportOptions = components['schemas']['ExportOptions'];
 export type Figure = components['schemas']['Figure'];
 export type FigureMark = components['schemas']['FigureMark'];
@@ -3053,6 +3119,7 @@ export type MissionCheck = components['schemas']['MissionCheck'];
 export type MissionEndCommand = components['schemas']['MissionEndCommand'];
 export type MissionNodeKind = components['schemas']['MissionNodeKind'];
 export type MissionPauseCommand = components['schemas']['MissionPauseCommand'];
+export type MissionPlanned = components['schemas']['MissionPlanned'];
 export type MissionSkipCommand = components['schemas']['MissionSkipCommand'];
 export type MissionStepStart = components['schemas']['MissionStepStart'];
 export type MissionStepState = components['schemas']['MissionStepState'];
@@ -3082,10 +3149,12 @@ export type Pairing = components['schemas']['Pairing'];
 export type Parameters = components['schemas']['Parameters'];
 export type ParametersCommand = components['schemas']['ParametersCommand'];
 export type PartHealth = components['schemas']['PartHealth'];
+export type PastMissionRun = components['schemas']['PastMissionRun'];
 export type PickPlace = components['schemas']['PickPlace'];
 export type PickedColour = components['schemas']['PickedColour'];
 export type PictureBytes = components['schemas']['PictureBytes'];
 export type PlacedPanel = components['schemas']['PlacedPanel'];
+export type PlannedMissionStep = components['schemas']['PlannedMissionStep'];
 export type PredictedChannel = components['schemas']['PredictedChannel'];
 export type PreviousFirmware = components['schemas']['PreviousFirmware'];
 export type Problem = components['schemas']['Problem'];
@@ -3106,6 +3175,7 @@ export type SavedLayout = components['schemas']['SavedLayout'];
 export type ScenarioCheck = components['schemas']['ScenarioCheck'];
 export type ScenarioDocument = components['schemas']['ScenarioDocument'];
 export type ScenarioEvent = components['schemas']['ScenarioEvent'];
+export type ScenarioEventKind = components['schemas']['ScenarioEventKind'];
 export type ScenarioStart = components['schemas']['ScenarioStart'];
 export type ScenarioStarted = components['schemas']['ScenarioStarted'];
 export type ScenarioState = components['schemas']['ScenarioState'];
@@ -4031,6 +4101,22 @@ export interface operations {
             };
         };
     };
+    listMissionRuns: {
+        parameters: {
+            query?: never;
+            path: {
+                name: string;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["PastMissionRun"][];
+                };
+            };
+        };
+    };
     startMission: {
         parameters: { query?: never };
         requestBody: {
@@ -4620,6 +4706,17 @@ export interface operations {
             };
         };
     };
+    listScenarioEvents: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["ScenarioEventKind"][];
+                };
+            };
+        };
+    };
     startScenario: {
         parameters: { query?: never };
         requestBody: {
@@ -4673,6 +4770,8 @@ export interface operations {
                 tag?: string[] | null;
                 origin?: ("operator" | "arming" | "scenario" | "simulated" | "import") | null;
                 state?: ("recording" | "complete" | "interrupted") | null;
+                /** @description name of the scenario that they ran */
+                scenario?: string;
                 /** @description those in the bin instead */
                 deleted?: boolean;
                 /** @description only sessions of lower numbers */

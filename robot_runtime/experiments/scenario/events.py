@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, make_dataclass
+from dataclasses import asdict, dataclass, field, fields, make_dataclass
 from functools import cache
 from math import hypot
 from typing import Annotated, Any, ClassVar, Literal, get_args
@@ -122,20 +122,28 @@ class WaterEvent(TimedEvent):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineFaultChange(TimedEvent):
-    """A fault of the serial line in one direction, as the emulated board's `line`."""
+    """A fault of the serial line in one direction.
+
+    It is as the emulated board's `line`.
+    """
 
     do = "line"
 
     direction: Literal["to_board", "from_board"]
     kind: LineKind
-    rate: Annotated[float | None, Range(0, 1)] = None
-    """Probability for each bit (bit_errors, burst) or character (drop, double, insert)."""
-    length: Annotated[int | None, Range(1, 10_000)] = None
-    """Length of a burst in bit times."""
-    seconds: Annotated[float | None, Range(0, 3600)] = None
-    """Duration of a stall; 0 ends it."""
-    on: bool | None = None
-    """True to cut the wire."""
+    rate: Annotated[float | None, Range(0, 1)] = field(
+        default=None,
+        metadata={
+            "description": "probability for each bit (bit_errors, burst) or character (drop, double, insert)"
+        },
+    )
+    length: Annotated[int | None, Range(1, 10_000)] = field(
+        default=None, metadata={"description": "of a burst, in bit times"}
+    )
+    seconds: Annotated[float | None, Range(0, 3600)] = field(
+        default=None, metadata={"description": "of a stall; 0 ends it"}
+    )
+    on: bool | None = field(default=None, metadata={"description": "true cuts the wire"})
 
     def __post_init__(self) -> None:
         allowed = _LINE_NUMBERS.get(self.kind, ("rate",))

@@ -15,6 +15,12 @@ LOOKAHEAD = 0.6
 """m; the point of its line that it swims to is this far ahead."""
 ALIGNED = 0.8
 """rad beside its course up to which it swims forwards; farther beside it turns on the spot first."""
+VERTICAL_SPEED = 0.17
+"""m/s up or down of the default craft, on trials in simulated water; for plans, as the next two."""
+TURN_RATE = 0.7
+"""rad/s on the spot."""
+FORWARD_SPEED = 0.18
+"""m/s with the full command forwards."""
 _TIMEOUT = {"description": "after which it fails", "unit": "s"}
 
 
@@ -51,6 +57,10 @@ class DiveLeaf(Leaf):
     def deepest(self) -> float:
         """The depth."""
         return self.depth
+
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return the way's duration and a steady second."""
+        return abs(self.depth - depth) / VERTICAL_SPEED + STEADY, self.depth
 
     def begin(self, robot: MissionRobot) -> None:
         """Hold the depth from now on."""
@@ -134,6 +144,11 @@ class TurnLeaf(Leaf):
         if self.by is not None:
             return f"Turn by {degrees(self.by):.0f}°"
         return f"Turn to {degrees(self.heading or 0.0):.0f}°"
+
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return the turn's duration and a steady second; of a heading, of the half of a half turn."""
+        angle = pi / 2 if self.by is None else abs(self.by)
+        return max(angle - self.within, 0.0) / TURN_RATE + STEADY, depth
 
     def begin(self, robot: MissionRobot) -> None:
         """Hold the heading from now on."""
@@ -225,6 +240,10 @@ class GoLeaf(Leaf):
         """The step in a few words, for a person."""
         return f"Go {self.distance:g} m at {degrees(self.heading):.0f}° by dead reckoning"
 
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return the duration of the way."""
+        return self.distance / (FORWARD_SPEED * self.x), depth
+
     def begin(self, robot: MissionRobot) -> None:
         """Begin the line where the robot is."""
         self._began = robot.now
@@ -264,6 +283,10 @@ class ToLightLeaf(Leaf):
     def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Swim to the light for {self.timeout:g} s"
+
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return its time: it is done after it."""
+        return self.timeout, depth
 
     def begin(self, robot: MissionRobot) -> None:
         """Start the time."""

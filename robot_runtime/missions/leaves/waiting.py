@@ -12,6 +12,8 @@ WET_FOR = 2.0
 """s at `WET_DEPTH` or deeper."""
 COUNTDOWN = Range(3, 20)
 """s of a countdown: its last three seconds are shown one by one."""
+RISE_SPEED = 0.03
+"""m/s of the default craft with still fins, on trials in simulated water; for plans."""
 _ALL: frozenset[Claim] = frozenset({"course", "depth", "heading"})
 
 
@@ -26,6 +28,10 @@ class WaitLeaf(Leaf):
     def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Wait for {self.seconds:g} s"
+
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return its time, and the depth to which it rises meanwhile."""
+        return self.seconds, max(depth - RISE_SPEED * self.seconds, 0.0)
 
     def begin(self, robot: MissionRobot) -> None:
         """Start the time."""
@@ -48,6 +54,10 @@ class CountDownLeaf(Leaf):
     def label(self) -> str:
         """The step in a few words, for a person."""
         return f"Count down {self.seconds:g} s with the LED"
+
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return its time, and the depth to which it rises meanwhile."""
+        return self.seconds, max(depth - RISE_SPEED * self.seconds, 0.0)
 
     def begin(self, robot: MissionRobot) -> None:
         """Start the time."""
@@ -77,6 +87,10 @@ class WaitUntilWetLeaf(Leaf):
     def label(self) -> str:
         """The step in a few words, for a person."""
         return "Wait until it is wet"
+
+    def estimate(self, depth: float) -> tuple[float | None, float]:
+        """Return no time: somebody holds it under water, at the depth that counts as wet."""
+        return None, max(depth, WET_DEPTH)
 
     def begin(self, robot: MissionRobot) -> None:
         """Start the time."""

@@ -1,7 +1,7 @@
 """Requests to the running water by name, and their service to other processes."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from robot_runtime.clock import Clock
@@ -38,13 +38,22 @@ class BeaconPositions:
 
 @dataclass(frozen=True, slots=True)
 class SensorFaultRequest:
-    """A sensor and its fault, as `SimulatedFault` has it."""
+    """A fault of a sensor, or its end.
+
+    `SimulatedFault` says which numbers each kind needs.
+    """
 
     sensor: str
     kind: Kind
-    share: float | None = None
-    size: float | None = None
-    speed: float | None = None
+    share: float | None = field(
+        default=None, metadata={"description": "of the readings that drop out or jump, above 0, at most 1"}
+    )
+    size: float | None = field(
+        default=None, metadata={"description": "of a jump, in the sensor's unit, above 0"}
+    )
+    speed: float | None = field(
+        default=None, metadata={"description": "of a drift, in the sensor's unit per second"}
+    )
 
 
 @dataclass(frozen=True, slots=True)

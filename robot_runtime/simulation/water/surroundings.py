@@ -1,6 +1,6 @@
 """Settings of water and hull that may change while it swims; each is checked at construction."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import hypot
 from typing import Self
 
@@ -31,12 +31,13 @@ FAR = 1000.0
 class Current:
     """The water's steady flow, the same everywhere. Raises ValueError beyond 2 m/s or 1 rad/s."""
 
-    north: float = 0.0
-    east: float = 0.0
-    down: float = 0.0
-    """m/s."""
-    turning: float = 0.0
-    """rad/s at which its direction turns, from north to east, beginning when it is set."""
+    north: float = field(default=0.0, metadata={"description": "m/s"})
+    east: float = field(default=0.0, metadata={"description": "m/s"})
+    down: float = field(default=0.0, metadata={"description": "m/s"})
+    turning: float = field(
+        default=0.0,
+        metadata={"description": "rad/s at which its direction turns, from north to east, from its start on"},
+    )
 
     def __post_init__(self) -> None:
         parts = (self.north, self.east, self.down)
@@ -49,12 +50,14 @@ class Current:
 class Waves:
     """One regular wave. Raises ValueError on impossible numbers; see also `World.set_waves`."""
 
-    amplitude: float = 0.0
-    """m, half of the height from trough to crest; 0: still water."""
-    period: float = 2.0
-    """Period in s, in the earth-fixed frame."""
-    direction: float = 0.0
-    """rad from north to east, towards which it runs."""
+    amplitude: float = field(
+        default=0.0,
+        metadata={"description": "m, half of the height from trough to crest; 0: still water"},
+    )
+    period: float = field(default=2.0, metadata={"description": "s, in the earth-fixed frame"})
+    direction: float = field(
+        default=0.0, metadata={"description": "rad from north to east, towards which it runs"}
+    )
 
     def __post_init__(self) -> None:
         _limit("a wave's amplitude", self.amplitude, 0.0, AMPLITUDE_MAX, "m")
@@ -70,12 +73,10 @@ class Trim:
     -d·w / weight.
     """
 
-    buoyancy: float
-    """Buoyancy under water as a share of the weight, 0.9 to 1.1."""
-    forward: float
-    right: float
-    above: float
-    """m, the centre of buoyancy from the centre of mass, at most 0.05 each; below 0 above, it capsizes."""
+    buoyancy: float = field(metadata={"description": "under water, as a share of the weight, 0.9 to 1.1"})
+    forward: float = field(metadata={"description": "m, centre of buoyancy from centre of mass, up to 0.05"})
+    right: float = field(metadata={"description": "m, as forward"})
+    above: float = field(metadata={"description": "m, as forward; below 0 it capsizes"})
 
     @classmethod
     def of(cls, craft: Craft) -> Self:

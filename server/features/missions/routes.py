@@ -10,6 +10,7 @@ from robot_runtime.missions.checks import check_sights, list_sights
 from robot_runtime.missions.document import MissionDocument
 from server.features.missions.library import UnknownMissionError, open_library, read_table
 from server.features.missions.nodes import list_node_kinds
+from server.features.missions.past_runs import PastMissionRuns
 from server.features.missions.schemas import (
     MissionBody,
     MissionCheck,
@@ -18,10 +19,12 @@ from server.features.missions.schemas import (
     MissionText,
     MissionVersion,
     NewMission,
+    PastMissionRun,
+    describe_plan,
     summarize_mission,
 )
 from server.http.dependencies import Provided
-from server.http.heavy_requests import TooManyHeavyError, Turn
+from server.http.heavy_requests import ReadingTurn, TooManyHeavyError, Turn
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
@@ -61,6 +64,12 @@ def list_mission_versions(settings: Provided[Settings], name: str) -> list[Missi
     return open_library(settings).versions(name)
 
 
+@router.operation("GET /runs/{name}", Need.VIEWER, TooManyHeavyError)
+def list_mission_runs(_: ReadingTurn, runs: Provided[PastMissionRuns], name: str) -> list[PastMissionRun]:
+    """List the last runs of a mission that sessions recorded, the newest first; twelve at most."""
+    return runs.find(name)
+
+
 @router.operation("GET /nodes", Need.VIEWER)
 def list_mission_nodes() -> list[MissionNodeKind]:
     """List the leaves and branches that a mission may have, with their fields and limits."""
@@ -76,9 +85,15 @@ async def check_mission(
     try:
         mission = await run_in_threadpool(open_library(settings).read, body.text)
     except ConfigError as problem:
-        return MissionCheck(problems=list(problem.problems), summary=None, unseen=[], table=table)
+        return MissionCheck(problems=list(problem.problems), summary=None, plan=None, unseen=[], table=table)
     unseen = await _find_unseen(mission, bridge)
-    return MissionCheck(problems=[], summary=summarize_mission(mission), unseen=unseen, table=table)
+    return MissionCheck(
+        problems=[],
+        summary=summarize_mission(mission),
+        plan=describe_plan(mission),
+        unseen=unseen,
+        table=table,
+    )
 
 
 async def _find_unseen(mission: MissionDocument, bridge: Bridge) -> list[str]:

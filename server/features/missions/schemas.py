@@ -10,8 +10,10 @@ from robot_runtime.contract.missions import MissionPhase
 from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.missions.document import MissionDocument
+from robot_runtime.missions.plan import plan_mission
 from server.http.request_body import RequestBody
 from server.platform.runs import RUN_MEANING
+from server.recording.schemas import Session
 
 SEEDS_MAX = 100
 MissionToml = Annotated[str, Field(max_length=BYTES_MAX, description="TOML")]
@@ -59,6 +61,24 @@ class MissionSummary(BaseModel):
     steps: list[MissionStepSummary]
 
 
+class PlannedMissionStep(BaseModel):
+    """One doing of a leaf, as it is expected if no step fails."""
+
+    path: str = Field(description="of the step, as in its summary")
+    start: float = Field(description="s since the mission's start")
+    end: float = Field(description="s since the mission's start")
+    start_depth: float = Field(description="m")
+    end_depth: float = Field(description="m")
+    known: bool = Field(description="false: its end depends on what happens, and is drawn 5 s on at most")
+
+
+class MissionPlanned(BaseModel):
+    """The planned depth over time."""
+
+    steps: list[PlannedMissionStep] = Field(description="in the order of their beginnings")
+    complete: bool = Field(description="false: it is longer, and the rest is left out")
+
+
 class MissionText(BaseModel):
     """A mission; `shipped` ones are part of the program, the others are in the data folder."""
 
@@ -85,6 +105,7 @@ class MissionCheck(BaseModel):
 
     problems: list[EntryProblem]
     summary: MissionSummary | None
+    plan: MissionPlanned | None = Field(description="null if it is not valid")
     unseen: list[str] = Field(
         description="what steps wait to see and the robot with its vision settings cannot, each with the "
         "step's path; empty while the robot does not answer"
@@ -116,6 +137,18 @@ class MissionNodeKind(BaseModel):
     fields: list[NodeField]
 
 
+class PastMissionRun(BaseModel):
+    """A run of a mission that a session recorded. Times are s since the session's start."""
+
+    session: Session
+    start: float
+    end: float
+    phase: MissionPhase = Field(description="still running where the recording lacks its end")
+    text: str = Field(description="how it ended")
+    elapsed: float = Field(description="s of the mission's clock")
+    deepest: float = Field(description="m")
+
+
 class TrialStart(RequestBody):
     """A mission to try, once for each seed from 1 on."""
 
@@ -145,6 +178,11 @@ class MissionTrial(BaseModel):
     seeds: int
     problem: str = Field(description="the reason of an early end; empty without one")
     results: list[MissionTrialResult]
+
+
+def describe_plan(mission: MissionDocument) -> MissionPlanned:
+    """Return the plan of a mission."""
+    return MissionPlanned.model_validate(asdict(plan_mission(mission)))
 
 
 def summarize_mission(mission: MissionDocument) -> MissionSummary:

@@ -7,11 +7,13 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.scenario.document import read_scenario
 from server.driving.admission import admit, require_control
 from server.features.scenarios import library
+from server.features.scenarios.event_kinds import list_event_kinds
 from server.features.scenarios.runs import ScenarioRunner
 from server.features.scenarios.schemas import (
     NewScenario,
     ScenarioCheck,
     ScenarioDocument,
+    ScenarioEventKind,
     ScenarioStart,
     ScenarioStarted,
     ScenarioState,
@@ -53,6 +55,12 @@ def check_scenario(_: Turn, document: ScenarioDocument) -> ScenarioCheck:
         return ScenarioCheck(problems=[], summary=summarize(read_scenario(document.text)))
     except ConfigError as problem:
         return ScenarioCheck(problems=list(problem.problems), summary=None)
+
+
+@router.operation("GET /events", Need.VIEWER)
+def list_scenario_events() -> list[ScenarioEventKind]:
+    """List the kinds of events that a scenario may have, with their fields and limits."""
+    return list_event_kinds()
 
 
 @router.operation("GET /state", Need.VIEWER)

@@ -67,6 +67,29 @@ class ScenarioSummary(BaseModel):
     events: list[ScenarioEvent]
 
 
+EventFieldKind = Literal["number", "whole", "text", "switch", "choice", "value"]
+
+
+class EventField(BaseModel):
+    """A field of an event; a `value` is a list or a table, written as TOML."""
+
+    name: str
+    kind: EventFieldKind
+    choices: list[str] = Field(description="of a choice; empty otherwise")
+    meaning: str
+    minimum: float | None
+    maximum: float | None
+    required: bool
+
+
+class ScenarioEventKind(BaseModel):
+    """A kind of event, beside its time."""
+
+    do: str
+    meaning: str
+    fields: list[EventField]
+
+
 class ScenarioCheck(BaseModel):
     """A scenario's problems, field by field, or its summary."""
 

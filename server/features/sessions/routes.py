@@ -59,6 +59,7 @@ def list_sessions(
     tag: Annotated[list[str] | None, Query(description="tags that they have, all of them")] = None,
     origin: Origin | None = None,
     state: State | None = None,
+    scenario: Annotated[str, Query(max_length=200, description="name of the scenario that they ran")] = "",
     deleted: Annotated[bool, Query(description="those in the bin instead")] = False,
     before: Annotated[
         int | None, Query(ge=1, le=IDENTIFIER_MAX, description="only sessions of lower numbers")
@@ -70,7 +71,16 @@ def list_sessions(
     The header `Total-Count` counts all matches. Where more follow, the header `Link` has the next page's
     address (`rel="next"`): the same with `before` as the last number of this one.
     """
-    page = catalogue.page(search, tag or (), origin, state=state, deleted=deleted, before=before, limit=limit)
+    page = catalogue.page(
+        search,
+        tag or (),
+        origin,
+        state=state,
+        scenario=scenario,
+        deleted=deleted,
+        before=before,
+        limit=limit,
+    )
     response.headers[TOTAL_COUNT] = str(page.total)
     if page.following is not None:
         following = request.url.include_query_params(before=page.following)

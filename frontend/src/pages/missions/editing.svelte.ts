@@ -1,5 +1,5 @@
 import { createContext, tick } from 'svelte';
-import { api, type MissionCheck, type MissionNodeKind } from '../../api';
+import { api, type MissionCheck, type MissionNodeKind, type MissionPlanned, type MissionSummary, type MissionTrial } from '../../api';
 import { CheckedText } from '../../parts/checked.svelte';
 import { missions as texts } from '../../texts/missions';
 import {
@@ -27,14 +27,16 @@ import {
 import { NOTHING, readSource, textDraft, writeSource, type Source } from './drafts';
 import { amend, begin, go, record } from './history';
 import { placeProblems } from './problems';
+import { figuresOf } from './trial';
 import { time } from './words';
 import { writeMission } from './toml';
 
-/** A text, how many seeds it was tried with, and how often each step failed, by its place. */
-interface TriedText {
+/** A plan, the text that it is of, its steps in words, and the depth limit (m). */
+export interface ShownPlan {
   readonly text: string;
-  readonly seeds: number;
-  readonly failures: Readonly<Record<string, number>>;
+  readonly plan: MissionPlanned;
+  readonly steps: MissionSummary['steps'];
+  readonly limit: number;
 }
 
 interface Entry {
@@ -61,7 +63,10 @@ export class MissionEditing {
   /** while the library has another text of it than what it was opened as */
   saving = $state(false);
   /** the last dry run; null where there was none */
-  trial = $state.raw<TriedText | null>(null);
+  trial = $state.raw<MissionTrial | null>(null);
+  /** the place of the step that is pointed at, in the tree or in its picture; null without one */
+  pointed = $state<string | null>(null);
+  #planned = $state.raw<ShownPlan | null>(null);
   readonly #heads: Record<symbol, HTMLElement> = {};
   readonly problems = $derived(placeProblems(this.untouched ? [] : (this.written.check?.problems ?? [])));
 
@@ -70,7 +75,16 @@ export class MissionEditing {
     Object.fromEntries((this.written.current ? (this.written.check?.summary?.steps ?? []) : []).filter(({ longest }) => longest >= 1).map(({ path, longest }) => [path, time(Math.round(longest))])),
   );
 
+  /** how often each step of the present text failed in the dry run, by its place */
+  readonly failures = $derived<Readonly<Record<string, number>>>(
+    Object.fromEntries(this.trial?.text === this.written.text ? figuresOf(this.trial).failures.map(({ place, count }) => [place, count]) : []),
+  );
+
   constructor() {
+    $effect(() => {
+      const { check, checked } = this.written;
+      if (check?.plan && check.summary) this.#planned = { text: checked, plan: check.plan, steps: check.summary.steps, limit: check.summary.depth };
+    });
     $effect(() => {
       const { check, current, text } = this.written;
       if (!current || this.#cards.text === text) return;
@@ -90,12 +104,12 @@ export class MissionEditing {
 
   /** how many seeds the present text was tried with */
   get tried(): number {
-    return this.trial?.text === this.written.text ? this.trial.seeds : 0;
+    return this.trial?.text === this.written.text ? this.trial.results.length : 0;
   }
 
-  /** how often each step of the present text failed then, by its place */
-  get failures(): Readonly<Record<string, number>> {
-    return this.trial?.text === this.written.text ? this.trial.failures : {};
+  /** the plan of the last valid text of this mission; null before the first */
+  get planned(): ShownPlan | null {
+    return this.#planned;
   }
 
   /** whether there is something that the library does not have */
@@ -141,6 +155,7 @@ export class MissionEditing {
     this.keep({ name, text: opened, mark });
     this.#history = begin<Entry>({ text, cards: null });
     this.open = null;
+    this.#planned = null;
     this.written.text = text;
   }
 

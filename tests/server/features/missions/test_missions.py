@@ -9,6 +9,8 @@ from threading import Barrier
 from typing import Any
 
 import pytest
+from sqlalchemy import update
+from sqlmodel import col
 
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.missions import MissionLimits
@@ -22,12 +24,16 @@ from server.features.missions.nodes import list_node_kinds
 from server.features.missions.trials import MissionTrials
 from server.platform.disk_space import FileWriteError
 from server.platform.edited_meanwhile import ChangedMeanwhileError
+from server.platform.models import Chunk
 from server.platform.runs import RunOverError
 from server.platform.settings import Settings
+from server.platform.store import Store
 from server.recording.auto_recording import AutoRecorder
 from server.recording.recorder import Recorder
 from tests.runtime.missions.water import DIVE, HOLD, mission
+from tests.server.analysis.dives import STARTED_STEADY, dive, record_dive
 from tests.server.blocks import state_block
+from tests.server.library.missions import DIVE_AT, MISSION_END, mission_blocks
 from tests.server.serving import Served
 from tests.server.waiting import until
 
@@ -277,3 +283,35 @@ def test_the_shell_s_check_names_what_the_camera_would_never_see(
     assert "Choose their dictionary in the vision settings." in capsys.readouterr().out
     assert main(["mission", "check", "follow_colour", *common]) == 0
     assert "would not begin" not in capsys.readouterr().out
+
+
+async def test_a_check_has_the_plan_of_a_valid_mission(served: Served) -> None:
+    check = (await served.api.post("/missions/check", json={"text": OWN})).json()
+    assert [(step["path"], step["end_depth"], step["known"]) for step in check["plan"]["steps"]] == [
+        ("1", 0.6, True),
+        ("2", 0.6, True),
+    ]
+    assert check["plan"]["complete"]
+    assert (await served.api.post("/missions/check", json={"text": "a ="})).json()["plan"] is None
+
+
+async def test_the_runs_of_a_mission_come_from_the_sessions_that_held_it(
+    served: Served, settings: Settings
+) -> None:
+    store = served.get(Store)
+    first = await record_dive(store, settings, [*dive(), *mission_blocks()])
+    await record_dive(store, settings, dive())
+    twice = await record_dive(store, settings, [*dive(), *mission_blocks(), *mission_blocks(shift=3.5)])
+    for _ in range(2):
+        runs = (await served.api.get("/missions/runs/look")).json()
+        assert [run["session"]["id"] for run in runs] == [twice, twice, first]
+    last = runs[-1]
+    assert (last["start"], last["end"]) == (DIVE_AT - STARTED_STEADY, MISSION_END - STARTED_STEADY)
+    assert (last["phase"], last["deepest"]) == ("failed", 0.61)
+    assert (await served.api.get("/missions/runs/other")).json() == []
+    (await served.api.delete(f"/sessions/{twice}")).raise_for_status()
+    third = await record_dive(store, settings, [*dive(), *mission_blocks()])
+    damage = update(Chunk).where(col(Chunk.topic) == "mission", col(Chunk.session_id) == third)
+    await store.execute(damage.values(data=b"no chunk"))
+    # What cannot be read is left out.
+    assert [run["session"]["id"] for run in (await served.api.get("/missions/runs/look")).json()] == [first]
