@@ -35,6 +35,7 @@ from server.analysis.schemas import (
 )
 from server.analysis.signals import Signal, list_signals, split
 from server.analysis.story import StoryTeller
+from server.analysis.study import Study
 from server.library.content import Recording, reading_content
 from server.library.missions import MissionStepStart, RecordedMission, read_missions
 from server.library.timeline import Moment, read_events
@@ -81,6 +82,7 @@ class Comparer:
         self._missions: ResultCache[list[RecordedMission]] = ResultCache(RESULTS_MAX)
         self._measured: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
         self._counted: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
+        self.study = Study(store, self._samples)
         self.stories = StoryTeller(store, self._samples, self._read_history, self._threads)
 
     def signals(self, session: int) -> list[Signal]:

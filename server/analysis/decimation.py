@@ -36,7 +36,7 @@ def decimate(series: Series, start: float, end: float, points: int, *, angle: bo
     first = max(int(np.searchsorted(series.times, start, "left")) - 1, 0)
     last = int(np.searchsorted(series.times, end, "right")) + 1
     times, values = series.times[first:last], series.values[first:last]
-    pause = _pause(series.times)
+    pause = usual_pause(series.times)
     if times.size <= points:
         return _broken(Envelope(times, values, values), pause, angle)
     width = (end - start) / points
@@ -49,7 +49,8 @@ def decimate(series: Series, start: float, end: float, points: int, *, angle: bo
     return _broken(line, max(pause, 2 * width), angle)
 
 
-def _pause(times: Floats) -> float:
+def usual_pause(times: Floats) -> float:
+    """Return the least time without samples (s) that is a pause."""
     usual = float(np.median(np.diff(times))) if times.size > 1 else 0.0
     return max(GAP_PERIODS * usual, GAP_LEAST)
 

@@ -321,6 +321,9 @@ export interface paths {
     "/api/sessions/{session}/missions": {
         get: operations["listSessionMissions"];
     };
+    "/api/sessions/{session}/pair": {
+        get: operations["getPair"];
+    };
     "/api/sessions/{session}/purge": {
         post: operations["purgeSession"];
     };
@@ -338,6 +341,9 @@ export interface paths {
     };
     "/api/sessions/{session}/snapshots": {
         get: operations["listSessionSnapshots"];
+    };
+    "/api/sessions/{session}/spectrum": {
+        get: operations["getSpectrum"];
     };
     "/api/sessions/{session}/stop": {
         post: operations["stopSession"];
@@ -2477,6 +2483,15 @@ export interface components {
             /** @description s since the session's start */
             time: number[];
         };
+        /** @description Two signals at the same times, in order of time. */
+        SignalPair: {
+            /** @description s since the session's start */
+            time: number[];
+            x: components["schemas"]["Signal"];
+            x_values: number[];
+            y: components["schemas"]["Signal"];
+            y_values: number[];
+        };
         /** @description The computer of the simulator; `here`: this one. */
         SimulatorPlace: {
             here: boolean;
@@ -2496,6 +2511,31 @@ export interface components {
             time: number;
             /** @description the same moment, s since 1970 */
             utc: number;
+        };
+        /** @description The one-sided power spectral density of a signal by Welch's method; its integral is the variance. */
+        Spectrum: {
+            /** @description in the signal's unit, squared, per Hz */
+            density: number[];
+            /** @description Hz */
+            frequency: number[];
+            /** @description null for a constant */
+            peak: components["schemas"]["SpectrumPeak"] | null;
+            /** @description why there is no spectrum; empty if there is one */
+            problem: string;
+            /** @description Hz, of the even grid that the samples were laid on */
+            rate: number;
+            /** @description number of averaged periodograms */
+            segments: number;
+            signal: components["schemas"]["Signal"];
+        };
+        /** @description The highest place of a spectrum, as the sine that would make it. */
+        SpectrumPeak: {
+            /** @description in the signal's unit */
+            amplitude: number;
+            /** @description Hz */
+            frequency: number;
+            /** @description of the signal's variance, 0 to 1 */
+            share: number;
         };
         /** @description The first run of the document. */
         Started: {
@@ -3192,8 +3232,11 @@ export type SessionLines = components['schemas']['SessionLines'];
 export type ShownChart = components['schemas']['ShownChart'];
 export type Signal = components['schemas']['Signal'];
 export type SignalLine = components['schemas']['SignalLine'];
+export type SignalPair = components['schemas']['SignalPair'];
 export type SimulatorPlace = components['schemas']['SimulatorPlace'];
 export type SnapshotValues = components['schemas']['SnapshotValues'];
+export type Spectrum = components['schemas']['Spectrum'];
+export type SpectrumPeak = components['schemas']['SpectrumPeak'];
 export type Started = components['schemas']['Started'];
 export type State = components['schemas']['State'];
 export type StateSilence = components['schemas']['StateSilence'];
@@ -5001,6 +5044,29 @@ export interface operations {
             };
         };
     };
+    getPair: {
+        parameters: {
+            query: {
+                x: string;
+                y: string;
+                /** @description start of the part, s since the start */
+                from?: number | null;
+                /** @description end of the part, s since the start */
+                to?: number | null;
+            };
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SignalPair"];
+                };
+            };
+        };
+    };
     purgeSession: {
         parameters: {
             query?: never;
@@ -5098,6 +5164,29 @@ export interface operations {
             200: {
                 content: {
                     "application/json": components["schemas"]["SnapshotValues"][];
+                };
+            };
+        };
+    };
+    getSpectrum: {
+        parameters: {
+            query: {
+                /** @description by name */
+                signal: string[];
+                /** @description start of the part, s since the start */
+                from?: number | null;
+                /** @description end of the part, s since the start */
+                to?: number | null;
+            };
+            path: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["Spectrum"][];
                 };
             };
         };

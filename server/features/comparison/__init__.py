@@ -4,7 +4,11 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="comparison",
-    routes=("server.features.comparison.routes:router", "server.features.comparison.story_routes:router"),
+    routes=(
+        "server.features.comparison.routes:router",
+        "server.features.comparison.story_routes:router",
+        "server.features.comparison.study_routes:router",
+    ),
     commands={"report": "server.features.comparison.command:report"},
     plug="server.features.comparison.plug:ComparisonPlug",
 )

@@ -1,21 +1,19 @@
 """The story of one session: depth, segments and flags, figures, track, and readings of a moment."""
 
-from typing import Annotated
-
-from fastapi import Query
 from fastapi.responses import Response
 
-from server.analysis.schemas import StoryFiguresQuery, TimeRange
+from server.analysis.schemas import StoryFiguresQuery
 from server.analysis.segment_figures import StoryFigures
 from server.analysis.story import Story
 from server.analysis.track import SwumTrack
+from server.features.comparison.parts import PartEnd, PartStart, read_part
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.http.dependencies import Provided
 from server.http.heavy_requests import ReadingTurn, RecordingTurn, TooManyHeavyError
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 from server.library.content import reading_content
-from server.library.opening import SECONDS_MAX, Moment, OpenRecording
+from server.library.opening import Moment, OpenRecording
 from server.library.readings import Readings, read_readings
 from server.platform.errors import InvalidError
 from server.recording.session import UnknownSessionError
@@ -23,16 +21,6 @@ from server.recording.session import UnknownSessionError
 router = Operations(prefix="/api", tags=["sessions"])
 
 _ERRORS = (UnknownSessionError, TooManyHeavyError, ComparisonError)
-
-
-def _seconds(name: str, which: str) -> object:
-    return Query(
-        alias=name,
-        ge=0,
-        le=SECONDS_MAX,
-        allow_inf_nan=False,
-        description=f"{which} of the part, s since the start",
-    )
 
 
 @router.operation("GET /sessions/{session}/story", Need.VIEWER, *_ERRORS, response_model=Story)
@@ -62,11 +50,11 @@ async def get_story_figures(
     _: ReadingTurn,
     worker: Provided[ComparisonWorker],
     session: Identifier,
-    start: Annotated[float | None, _seconds("from", "start")] = None,
-    end: Annotated[float | None, _seconds("to", "end")] = None,
+    start: PartStart = None,
+    end: PartEnd = None,
 ) -> Response:
     """Return the figures of a session's armed time and of each segment; with `from` and `to` of that part."""
-    query = StoryFiguresQuery(session=session, part=_part(start, end))
+    query = StoryFiguresQuery(session=session, part=read_part(start, end))
     return _json(await worker.ask("story_figures", query.model_dump_json()))
 
 
@@ -75,16 +63,6 @@ def get_readings(_: RecordingTurn, recording: OpenRecording, time: Moment) -> Re
     """Return depth, attitude, fins and battery at a moment of a session."""
     with reading_content(recording.row):
         return read_readings(recording, time)
-
-
-def _part(start: float | None, end: float | None) -> TimeRange | None:
-    if start is None and end is None:
-        return None
-    if start is None or end is None:
-        raise InvalidError("A part of the time needs both its start and its end: give from and to.")
-    if end <= start:
-        raise InvalidError(f"The end, {end:g} s, must be after the start, {start:g} s.")
-    return TimeRange(start=start, end=end)
 
 
 def _json(data: bytes) -> Response:

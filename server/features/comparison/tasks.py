@@ -12,6 +12,7 @@ from server.analysis.comparer import Comparer
 from server.analysis.report import write_report
 from server.analysis.schemas import ComparisonQuery, LinesQuery, ReportQuery, StoryFiguresQuery
 from server.analysis.signals import Signal
+from server.analysis.study import Spectrum, StudyQuery
 from server.analysis.track import SwumTrack
 from server.platform.errors import ApiError, UnavailableError
 from server.platform.store import Reader
@@ -58,6 +59,17 @@ def story_figures(comparer: Comparer, query: str) -> bytes:
     return comparer.stories.measure(asked.session, asked.part).model_dump_json().encode()
 
 
+def spectrum(comparer: Comparer, query: str) -> bytes:
+    """Return the spectra of signals, as JSON."""
+    found = comparer.study.find_spectra(StudyQuery.model_validate_json(query))
+    return TypeAdapter(list[Spectrum]).dump_json(found)
+
+
+def pair(comparer: Comparer, query: str) -> bytes:
+    """Return one signal against another, as JSON."""
+    return comparer.study.pair(StudyQuery.model_validate_json(query)).model_dump_json().encode()
+
+
 TASKS: Mapping[str, Task] = {
     "compare": compare,
     "lines": lines,
@@ -66,6 +78,8 @@ TASKS: Mapping[str, Task] = {
     "story": story,
     "track": track,
     "story_figures": story_figures,
+    "spectrum": spectrum,
+    "pair": pair,
 }
 
 

@@ -14,7 +14,7 @@ from server.platform.errors import UnavailableError
 from server.platform.settings import DataFolder
 from server.processes.exit_status import describe_status
 
-Task = Literal["compare", "lines", "signals", "report", "story", "track", "story_figures"]
+Task = Literal["compare", "lines", "signals", "report", "story", "track", "story_figures", "spectrum", "pair"]
 
 SECONDS_MAX = 120.0
 REPORT_SECONDS_MAX = 600.0

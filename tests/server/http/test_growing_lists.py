@@ -12,6 +12,7 @@ from server.analysis.flags import FLAGS_MAX
 from server.analysis.schemas import SESSIONS_MAX
 from server.analysis.segment_figures import SEGMENTS_MAX
 from server.analysis.story import COLUMNS
+from server.analysis.study import FREQUENCIES_MAX, PAIRS_MAX, SPECTRA_MAX
 from server.analysis.track import POINTS_MAX, TRACKS_MAX
 from server.app import create_app
 from server.driving.changes import SHOWN
@@ -93,6 +94,9 @@ LIMITS = {
         for way in ("estimate", "truth")
         for column in ("time", "x", "y", "depth")
     },
+    "/api/sessions/{session}/spectrum": SPECTRA_MAX,
+    **{f"/api/sessions/{{session}}/spectrum {one}": FREQUENCIES_MAX for one in ("frequency", "density")},
+    **{f"/api/sessions/{{session}}/pair {one}": PAIRS_MAX for one in ("time", "x_values", "y_values")},
     "/api/sessions/{session}/timeline events": SHOWN_MAX,
     "/api/sessions/{session}/timeline holes": SHOWN_MAX,
     "/api/sessions/{session}/timeline markers": SHOWN_MAX,

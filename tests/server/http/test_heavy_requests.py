@@ -60,7 +60,7 @@ def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -
     }
     assert heavy == {
         *("getComparisonReport", "compareSessions", "compareLines", "getBlocks"),
-        *("getStory", "getStoryFigures", "getTrack", "getReadings"),
+        *("getStory", "getStoryFigures", "getTrack", "getReadings", "getSpectrum", "getPair"),
         *("checkScenario", "checkMission", "readVision", "examineAgain"),
         *("getSession", "getTimeline", "getThumbnail", "listSessionMissions"),
         *("listSessionSnapshots", "getSnapshot"),

@@ -1,0 +1,138 @@
+"""The study of one session: spectra of its signals, and one signal against another."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+from pydantic import BaseModel, Field
+
+from server.analysis.samples import Samples
+from server.analysis.schemas import TimeRange
+from server.analysis.signals import Signal, list_signals, split
+from server.analysis.spectrum import SEGMENT_MOST, NoSpectrumError, find_spectrum, pair
+from server.library.content import Recording, reading_content
+from server.metrics.series import Floats, Series
+from server.platform.errors import NotFoundError
+from server.platform.store import Reader
+from server.recording.session import find_row
+
+FREQUENCIES_MAX = SEGMENT_MOST // 2 + 1
+PAIRS_MAX = 5000
+SPECTRA_MAX = 6
+
+
+class UnknownSignalError(NotFoundError):
+    """The session has no such signal"""
+
+
+class StudyQuery(BaseModel):
+    """Signals of a session within a part of its time, or all of it; of a pair first the one across."""
+
+    session: int
+    signals: list[str]
+    part: TimeRange | None
+
+
+class SpectrumPeak(BaseModel):
+    """The highest place of a spectrum, as the sine that would make it."""
+
+    frequency: float = Field(description="Hz")
+    amplitude: float = Field(description="in the signal's unit")
+    share: float = Field(description="of the signal's variance, 0 to 1")
+
+
+class Spectrum(BaseModel):
+    """The one-sided power spectral density of a signal by Welch's method; its integral is the variance."""
+
+    signal: Signal
+    frequency: list[float] = Field(description="Hz")
+    density: list[float] = Field(description="in the signal's unit, squared, per Hz")
+    rate: float = Field(description="Hz, of the even grid that the samples were laid on")
+    segments: int = Field(description="number of averaged periodograms")
+    peak: SpectrumPeak | None = Field(description="null for a constant")
+    problem: str = Field(description="why there is no spectrum; empty if there is one")
+
+
+class SignalPair(BaseModel):
+    """Two signals at the same times, in order of time."""
+
+    x: Signal
+    y: Signal
+    time: list[float] = Field(description="s since the session's start")
+    x_values: list[float]
+    y_values: list[float]
+
+
+class Study:
+    """Spectra and pairs of the signals of sessions.
+
+    Methods raise UnknownSessionError, UnknownSignalError, StoreError and RecordingError.
+    """
+
+    def __init__(self, store: Reader, samples: Samples) -> None:
+        self._store = store
+        self._samples = samples
+
+    def find_spectra(self, query: StudyQuery) -> list[Spectrum]:
+        """Return the spectrum of each signal, in the requested order."""
+        return [_describe_spectrum(signal, series) for signal, series in self._read(query)]
+
+    def pair(self, query: StudyQuery) -> SignalPair:
+        """Return one signal against another."""
+        (x, across), (y, upward) = self._read(query)
+        times, x_values, y_values = pair(across, upward, PAIRS_MAX, angle=_is_angle(x))
+        return SignalPair(
+            x=x, y=y, time=_numbers(times), x_values=_numbers(x_values), y_values=_numbers(y_values)
+        )
+
+    def _read(self, query: StudyQuery) -> list[tuple[Signal, Series]]:
+        recording = Recording(self._store, find_row(self._store, query.session))
+        with reading_content(recording.row):
+            known = _known(recording, query.signals)
+            series = self._samples.read(recording, known)
+        part = query.part
+        return [
+            (known[name], series[name].within(part.start, part.end) if part else series[name])
+            for name in query.signals
+            if _is_there(name, known, series)
+        ]
+
+
+def _known(recording: Recording, names: Sequence[str]) -> dict[str, Signal]:
+    topics = {split(name)[0] for name in names}
+    return {signal.name: signal for signal in list_signals(recording, topics) if signal.name in names}
+
+
+def _is_there(name: str, known: dict[str, Signal], series: dict[str, Series]) -> bool:
+    """Return True. Raise UnknownSignalError for a signal that the session lacks."""
+    if name not in known or name not in series:
+        raise UnknownSignalError(f"This session has no signal “{name}”. Choose another.")
+    return True
+
+
+def _describe_spectrum(signal: Signal, series: Series) -> Spectrum:
+    try:
+        found = find_spectrum(series, angle=_is_angle(signal))
+    except NoSpectrumError as problem:
+        return Spectrum(
+            signal=signal, frequency=[], density=[], rate=0, segments=0, peak=None, problem=str(problem)
+        )
+    return Spectrum(
+        signal=signal,
+        frequency=_numbers(found.frequency),
+        density=_numbers(found.density),
+        rate=found.rate,
+        segments=found.segments,
+        peak=SpectrumPeak.model_validate(asdict(found.peak)) if found.peak is not None else None,
+        problem="",
+    )
+
+
+def _is_angle(signal: Signal) -> bool:
+    return signal.unit == "rad"
+
+
+def _numbers(values: Floats) -> list[float]:
+    """Return the values with seven significant digits."""
+    numbers: list[float] = np.char.mod("%.7g", values).astype(float).tolist() if values.size else []
+    return numbers
