@@ -18,6 +18,7 @@ const LAYERS = [
   ['capture', 'film', 'sound'],
   ['parts'],
   ['charts'],
+  ['story'],
   ['panels/*'],
   ['panels'],
   ['layout'],

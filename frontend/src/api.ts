@@ -178,6 +178,12 @@ export const api = {
       (blocks, response): Stretch => ({ blocks: bytes(blocks), leftOut: leftOut(response) }),
     ),
   signals: (session: number) => ask(server.GET('/api/sessions/{session}/signals', { params: { path: { session } } })),
+  story: (session: number) => ask(server.GET('/api/sessions/{session}/story', { params: { path: { session } }, fetch: within(TIMEOUT_COMPARE) })),
+  /** of the whole dive and its segments, or of a part alone, s since the session's start */
+  storyFigures: (session: number, part: { start: number; end: number } | null) =>
+    ask(server.GET('/api/sessions/{session}/story/figures', { params: { path: { session }, query: part === null ? {} : { from: part.start, to: part.end } }, fetch: within(TIMEOUT_COMPARE) })),
+  track: (session: number) => ask(server.GET('/api/sessions/{session}/track', { params: { path: { session } }, fetch: within(TIMEOUT_COMPARE) })),
+  readings: (session: number, time: number) => ask(server.GET('/api/sessions/{session}/readings', { params: { path: { session }, query: { time } } })),
   compare: (body: schemas.ComparisonQuery) => ask(server.POST('/api/compare', { body, fetch: within(TIMEOUT_COMPARE) })),
   compareLines: (body: schemas.LinesQuery) => ask(server.POST('/api/compare/lines', { body, fetch: within(TIMEOUT_COMPARE) })),
   compareReport: (query: ReportQuery) => address('/api/compare/report', { query }),

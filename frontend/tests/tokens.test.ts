@@ -132,7 +132,7 @@ const PLACES: Readonly<Record<string, readonly string[]>> = {
   stop: ['shell/StopButton.svelte', 'pages/operate/drive/PadMap.svelte', 'drive/', 'flight/'],
   alarm: [
     // alarms, faults and a lost link
-    'shell/', 'flight/', 'panels/events/', 'panels/console/', 'parts/Sheet.svelte', 'parts/state/', 'pages/operate/Failsafe.svelte', 'pages/replay/SeekBar.svelte',
+    'shell/', 'flight/', 'panels/events/', 'panels/console/', 'parts/Sheet.svelte', 'parts/state/', 'pages/operate/Failsafe.svelte', 'pages/replay/SeekBar.svelte', 'story/', 'pages/sessions/dive/MomentCard.svelte',
     // a check that the robot did not pass
     'parts/Sign.svelte', 'parts/Judged.svelte', 'pages/bring_up/StepResults.svelte', 'pages/bring_up/DeviceChips.svelte',
     // a drawing of what is red itself: a wire, a magnet's pole

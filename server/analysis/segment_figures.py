@@ -32,9 +32,11 @@ STORY_FIGURES: tuple[FigureMeaning, ...] = (
     describe("duration", "Duration", "s", 1, "Time armed in the range.", "neither"),
     describe("deepest", "Greatest depth", "m", 2, "Greatest depth in the range.", "neither"),
     *(meaning for name in _SHARED for meaning in FIGURES if meaning.name == name),
-    describe("alarms", "Alarms", "", 0, "Alarms that began in the range."),
+    describe("alarms", "Alarms", "", 0, "Alarms that began in the range, or ended it."),
 )
 _OF_A_STEP = ("cycle_amplitude", "overshoot", "settling_time")
+DISARMING = 1.0
+"""s from the end of an armed time until the alarm that ended it."""
 NOT_HELD = "No depth was held."
 NOTHING_HELD_THERE = "No depth was held in this range."
 SEVERAL = "One number of several segments would mean little: see those of each."
@@ -62,7 +64,7 @@ class DiveFigures:
         self._series = samples.read(recording, [MEASURED, SET_POINT])
         self._losses = read_losses(recording)
         events = read_events(recording, EVENTS_MAX)
-        self._alarms = np.array([event.time for event in events if event.severity == "alarm"])
+        self._alarms = [event.time for event in events if event.severity == "alarm"]
 
     def measure_all(self) -> StoryFigures:
         """Return the figures of the armed time, and of each segment."""
@@ -93,7 +95,7 @@ class DiveFigures:
         figures["duration"] = Figure(value=sum(span.end - span.start for span in spans))
         figures["deepest"] = self._deepest(evaluated)
         figures["fin_strokes"] = count_fin_strokes(self._recording, spans)
-        figures["alarms"] = Figure(value=float(np.count_nonzero(evaluated.mask(self._alarms))))
+        figures["alarms"] = Figure(value=float(sum(self._has_alarm(spans, time) for time in self._alarms)))
         return _complete(figures, NOTHING_THERE if held else not_held)
 
     def _held(self, spans: tuple[Span, ...]) -> Iterator[Span]:
@@ -103,6 +105,15 @@ class DiveFigures:
                 start, end = max(span.start, segment.start), min(span.end, segment.end)
                 if segment.holds_depth and start < end:
                     yield Span(start, end)
+
+    def _has_alarm(self, spans: tuple[Span, ...], time: float) -> bool:
+        """Return True for an alarm in these spans, or one that has just disarmed the robot at their end."""
+        starts = [segment.start for segment in self._segments]
+        return any(
+            span.start <= time < span.end
+            or (span.end <= time < span.end + DISARMING and span.end not in starts)
+            for span in spans
+        )
 
     def _deepest(self, evaluated: EvaluationRange) -> Figure:
         depth = self._series.get(MEASURED)

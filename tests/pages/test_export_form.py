@@ -16,7 +16,7 @@ def test_a_person_chooses_the_compression_of_mcap_alone(page: Page, site: Site, 
     fill(site)
     numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
     page.set_viewport_size(size)
-    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}")
+    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}/data")
     form = page.get_by_role("region", name="Export")
     choice = form.get_by_role("group", name="Compression")
     expect(form.get_by_role("radio", name="MCAP")).to_be_visible()
@@ -41,7 +41,7 @@ def test_a_person_says_which_spreadsheet_reads_the_table(page: Page, site: Site,
     fill(site)
     numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
     page.set_viewport_size(size)
-    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}")
+    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}/data")
     form = page.get_by_role("region", name="Export")
     choice = form.get_by_role("group", name="Read by")
     expect(choice.get_by_role("button", name="Programs")).to_have_attribute("aria-pressed", "true")

@@ -54,7 +54,7 @@ def test_a_chip_of_the_export_shows_its_meaning_to_a_key(page: Page, site: Site)
     session = site.api.post("/sessions", json={"name": "chips"}).json()["id"]
     wait_for(lambda: "depth" in topics(site, session), "samples of depth")
     site.api.post(f"/sessions/{session}/stop").raise_for_status()
-    page.goto(f"{site.url}/#/sessions/{session}")
+    page.goto(f"{site.url}/#/sessions/{session}/data")
     page.get_by_role("radio", name=re.compile("CSV")).first.check(force=True)
     chip = page.get_by_role("checkbox", name="depth", exact=True)
     chip.focus()

@@ -20,7 +20,7 @@ def page(request: pytest.FixtureRequest, browser: Browser, cookies: object) -> I
 def test_an_export_says_why_it_refuses_a_range(page: Page, site: DiveSite) -> None:
     fill(site)
     numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
-    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}")
+    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}/data")
     form = page.get_by_role("region", name="Export")
     create = form.get_by_role("button", name="Create file")
     start, end = form.get_by_label("From"), form.get_by_label("To", exact=True)

@@ -95,7 +95,7 @@ def test_a_token_is_made_once_however_often_its_button_is_pressed(page: Page, si
 @pytest.mark.usefixtures("_at_rest")
 def test_a_report_can_be_made_while_it_records_and_an_archive_cannot(page: Page, site: Site) -> None:
     session = site.api.post("/sessions", json={"name": "goes on"}).raise_for_status().json()["id"]
-    page.goto(f"{site.url}/#/sessions/{session}")
+    page.goto(f"{site.url}/#/sessions/{session}/data")
     form = page.get_by_role("region", name="Export")
     create = form.get_by_role("button", name="Create file")
     form.get_by_role("radio", name="Archive").check()

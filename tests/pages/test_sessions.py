@@ -65,7 +65,7 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
 def test_a_session_shows_the_craft_that_swam(page: Page, site: Site) -> None:
     site.api.post("/sessions", json={"name": "which craft"}).raise_for_status()
     site.api.post(f"/sessions/{newest(site)}/stop").raise_for_status()
-    page.goto(f"{site.url}/#/sessions/{newest(site)}")
+    page.goto(f"{site.url}/#/sessions/{newest(site)}/data")
     details = page.get_by_role("region", name="Details")
     expect(details.get_by_role("term").filter(has_text="Craft")).to_be_visible()
     expect(details).to_contain_text("Default craft")

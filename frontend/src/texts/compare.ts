@@ -2,7 +2,7 @@
 
 export const compare = {
   title: 'Compare sessions',
-  titleOfOne: 'Session figures',
+  titleOfOne: 'Signals of a session',
   back: 'All sessions',
   empty: { title: 'No session selected', text: 'Select two or more sessions in the list to compare.', toList: 'Open the list' },
   presets: {

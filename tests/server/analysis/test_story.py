@@ -132,6 +132,15 @@ def test_the_whole_of_a_mixed_dive_has_no_figure_of_a_step(store: Store, session
     assert whole["rmse"].value == pytest.approx(np.sqrt(np.mean(errors**2)), rel=1e-2)
 
 
+def test_an_alarm_that_disarms_belongs_to_the_last_segment(store: Store, settings: Settings) -> None:
+    blocks = [block for block in mixed_dive() if block.topic.name != "event"]
+    alarm = documents.Event(time=DISARMED + 0.02, kind="leak", severity="alarm", text="Water inside.")
+    number = record(store, settings, [*blocks, Block.of(BY_NAME["event"], 1, 0, pack_documents([alarm]))])
+    figures = Comparer(store).stories.measure(number, None)
+    assert [segment["alarms"].value for segment in figures.segments] == [0, 0, 0, 1]
+    assert figures.whole["alarms"].value == 1
+
+
 def test_a_chosen_part_has_figures_of_its_own(store: Store, session: int) -> None:
     part = TimeRange(start=STEPPED - ORIGIN, end=RETUNED - ORIGIN)
     stories = Comparer(store).stories

@@ -1,5 +1,5 @@
 /** The robot from above with its fins, and a dial for each fin. */
-import { degrees } from '../../attitude';
+import { degrees } from '../attitude';
 
 export interface Look {
   readonly leaf: string;

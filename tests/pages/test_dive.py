@@ -1,0 +1,106 @@
+"""A session's page as one dive: curve, moment, segments, range and track, by pointer, keys and address."""
+
+import re
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from server.platform.schema import prepare
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
+from tests.browser.opening import DESKTOP, opened_page, signed_in
+from tests.pages.dive_site import DiveSite
+from tests.server.analysis.dives import dive, record
+from tests.stack import ROOT
+
+
+def record_dives(data: Path) -> None:
+    settings = Settings(data=DataFolder(data), config=ROOT / "robot.toml")
+    make_folders(settings.data)
+    prepare(settings.data)
+    with closing(Store(settings.data.database)) as store:
+        record(store, settings, dive(), name="two steps")
+        record(store, settings, dive(arms=False), name="afloat")
+        record(store, settings, [], name="nothing")
+
+
+@pytest.fixture(scope="module")
+def dives(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DiveSite]:
+    """A server that has a dive of two segments, one that never armed, and an empty session."""
+    data = tmp_path_factory.mktemp("data")
+    with ThreadPoolExecutor(1) as elsewhere:  # Playwright keeps an event loop running here
+        elsewhere.submit(record_dives, data).result()
+    with DiveSite(data) as site:
+        yield site
+
+
+@pytest.fixture
+def page(browser: Browser, dives: DiveSite) -> Iterator[Page]:
+    with opened_page(browser, dives, signed_in(browser, dives), DESKTOP) as page:
+        yield page
+
+
+def test_a_dive_is_looked_at_segment_by_segment(page: Page, dives: DiveSite) -> None:
+    page.goto(f"{dives.url}/#/sessions/1")
+    curve = page.get_by_role("slider", name="Depth over time")
+    expect(page.get_by_role("list", name="Who swam")).to_contain_text("pid")
+    expect(page.get_by_role("button", name=re.compile("Yellow card"))).to_be_visible()
+    figures = page.get_by_role("region", name="Figures", exact=True)
+    first = figures.get_by_role("button", name=re.compile("pid, 0.50 m"))
+    expect(figures.get_by_role("row").filter(has_text="pid, 0.50 m")).to_contain_text("10.0")
+
+    first.click()
+    expect(first).to_have_attribute("aria-pressed", "true")
+    expect(page).to_have_url(re.compile(r"from=2\.5&to=12\.5"))
+    page.go_back()
+    expect(first).to_have_attribute("aria-pressed", "false")
+
+    curve.focus()
+    curve.press("Home")
+    for _ in range(2):
+        curve.press("Shift+ArrowRight")
+    moment = page.get_by_role("region", name="Moment")
+    expect(curve).to_have_attribute("aria-valuetext", re.compile("^00:03, "))
+    expect(moment.locator("b")).to_have_text("00:03")
+    expect(moment).to_contain_text("Set point0.50")
+    expect(page).to_have_url(re.compile(r"at=3\.4"))
+    curve.press("Enter")
+    expect(page).to_have_url(re.compile("#/replay/1"))
+
+
+def test_a_range_is_drawn_and_has_figures(page: Page, dives: DiveSite) -> None:
+    page.goto(f"{dives.url}/#/sessions/1")
+    curve = page.get_by_role("slider", name="Depth over time")
+    box = curve.bounding_box()
+    assert box is not None
+    middle = box["y"] + 60
+    page.mouse.move(box["x"] + 0.4 * box["width"], middle)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.5 * box["width"], middle)
+    page.mouse.move(box["x"] + 0.6 * box["width"], middle)
+    page.mouse.up()
+    row = page.get_by_role("row").filter(has_text="Chosen range")
+    expect(row).to_contain_text(re.compile(r"6\.\d"))
+    page.get_by_role("button", name="Zoom in").click()
+    expect(page.get_by_role("button", name="Whole dive", exact=True)).to_be_visible()
+    page.get_by_role("button", name="Clear range").click()
+    expect(row).to_be_hidden()
+    expect(page.get_by_role("button", name="Zoom in")).to_be_hidden()
+
+
+@pytest.mark.parametrize(
+    ("address", "sentence"),
+    [
+        ("1?from=x&to=3", "This address names a time that the session does not have (from=x, to=3)."),
+        ("1?at=1e9", "This address names a time that the session does not have (at=1e9)."),
+        ("2", "The robot was never armed in this session: there are no segments."),
+        ("3", "This session has no samples."),
+    ],
+)
+def test_what_cannot_be_shown_is_said(page: Page, dives: DiveSite, address: str, sentence: str) -> None:
+    page.goto(f"{dives.url}/#/sessions/{address}")
+    expect(page.get_by_text(sentence)).to_be_visible()
