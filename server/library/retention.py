@@ -18,6 +18,7 @@ from sqlmodel import col, func, select
 
 from robot_runtime.clock import Clock
 from server.library.config import SessionsConfig
+from server.library.film_removal import FilmRemoval
 from server.library.storage import GIGABYTE, measure
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.notices import Notices
@@ -67,6 +68,7 @@ class RetentionWorker:
     ) -> None:
         self.on_purge: list[Callable[[int], None]] = []
         self._store = store
+        self._films = FilmRemoval(store)
         self._settings = settings
         self._rules = settings.section(SessionsConfig)
         self._notices = notices
@@ -146,7 +148,11 @@ class RetentionWorker:
         needed -= sum(session.bytes for session in binned if session in going or session not in settled)
         if needed <= 0:
             return
-        rows = _first(await self._unprotected(), needed)
+        candidates = await self._unprotected()
+        needed = await self._remove_films(candidates, needed)
+        if needed <= 0:
+            return
+        rows = _first(candidates, needed)
         if rows:
             await self._change(rows, deleted=now)
             self._notify(
@@ -162,10 +168,25 @@ class RetentionWorker:
                 "free space on the computer that holds the data folder.",
             )
 
+    async def _remove_films(self, candidates: list[_Candidate], needed: int) -> int:
+        """Remove the oldest films; return the bytes that are needed still."""
+        removed = list[_Candidate]()
+        filmed = await self._films.filmed()
+        for candidate in candidates:
+            if needed > 0 and candidate.id in filmed:
+                needed -= await self._films.measure(candidate.id)
+                await self._films.remove(candidate.id)
+                removed.append(candidate)
+        if removed:
+            text = (
+                f"Less than {self._rules.keep_free:g} GB of the disk are free: the film of {_name(removed)} "
+                "was removed; the samples remain. To keep a film, mark its session as kept."
+            )
+            self._notices.notify("storage", "caution", text)
+        return needed
+
     def _notify(self, rows: list[_Candidate], why: str) -> None:
-        names = ", ".join(f"“{row.name}”" for row in rows[:NAMES_SHOWN])
-        more = f" and {len(rows) - NAMES_SHOWN} more" if len(rows) > NAMES_SHOWN else ""
-        text = f"{why}: {names}{more} went into the bin. To keep one, restore it and mark it as kept."
+        text = f"{why}: {_name(rows)} went into the bin. To keep one, restore it and mark it as kept."
         self._notices.notify("storage", "caution", text)
 
     async def _unprotected(self) -> list[_Candidate]:
@@ -245,6 +266,13 @@ class RetentionWorker:
         while free_pages > 0 and free_pages != before:
             await asyncio.sleep(PAUSE)
             before, free_pages = free_pages, await self._store.write(free_some, frees=True)
+
+
+def _name(sessions: Sequence[_Candidate]) -> str:
+    """Return the names of the first sessions, and how many more there are."""
+    names = ", ".join(f"“{session.name}”" for session in sessions[:NAMES_SHOWN])
+    more = len(sessions) - NAMES_SHOWN
+    return f"{names} and {more} more" if more > 0 else names
 
 
 def _first(sessions: Iterable[_Candidate], needed: int) -> list[_Candidate]:

@@ -104,7 +104,7 @@ class Gap(SQLModel, table=True):
     """Samples that are not in the session: `missed` of them, noticed at `time` (s, steady clock).
 
     Kinds: "missed" never arrived, "restarted" the writer began to count anew, "not stored" could not be
-    written, "damaged" could not be read.
+    written, "damaged" could not be read, "removed" made room for others.
     """
 
     id: int | None = Field(default=None, primary_key=True)

@@ -6,7 +6,7 @@ from typing import Literal
 from pydantic import BaseModel, Field
 
 State = Literal["recording", "complete", "interrupted"]
-GapKind = Literal["missed", "restarted", "not stored", "damaged"]
+GapKind = Literal["missed", "restarted", "not stored", "damaged", "removed"]
 Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
 
 

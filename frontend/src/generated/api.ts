@@ -2445,7 +2445,7 @@ export interface components {
         /** @description Samples that are missing in the session: `missed` of them, noticed at `time`. */
         SessionGap: {
             /** @enum {string} */
-            kind: "missed" | "restarted" | "not stored" | "damaged";
+            kind: "missed" | "restarted" | "not stored" | "damaged" | "removed";
             missed: number;
             /** @description s since the session's start */
             time: number;

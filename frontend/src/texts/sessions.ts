@@ -72,6 +72,7 @@ export const sessions = {
     restarted: (topic: string) => `the source of ${topic} restarted`,
     notStored: (samples: string, topic: string) => `${samples} of ${topic} not stored: disk full or failed`,
     damaged: (samples: string, topic: string) => `${samples} of ${topic} arrived damaged`,
+    removed: (pictures: string) => `film removed to make room on the disk: ${pictures} pictures`,
   },
   bin: {
     title: 'Bin',

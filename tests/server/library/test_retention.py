@@ -15,6 +15,7 @@ from robot_runtime.clock import SimulatedClock
 from robot_runtime.transport.blocks import Block
 from server.library.catalogue import Catalogue
 from server.library.config import SessionsConfig
+from server.library.content import Recording
 from server.library.retention import BIN_SECONDS, RetentionWorker
 from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices
@@ -22,8 +23,8 @@ from server.platform.settings import Settings
 from server.platform.store import Store
 from server.platform.wall_clock import DAY
 from server.recording.recorder import Recorder
-from server.recording.session import REMOVING, new_row
-from tests.server.blocks import depth_block
+from server.recording.session import REMOVING, find_row, new_row
+from tests.server.blocks import depth_block, film_block
 from tests.server.waiting import SECONDS
 
 NOW = 1.9e9
@@ -69,6 +70,11 @@ class Keeper:
 
     def names(self, *, deleted: bool = False) -> list[str]:
         return [session.name for session in self.catalogue.page(deleted=deleted).sessions]
+
+    def gaps(self) -> list[tuple[int, str, str, int]]:
+        query = select(Gap.session_id, Gap.topic, Gap.kind, Gap.missed).where(Gap.kind == "removed")
+        with self.store.read() as database:
+            return sorted((*row,) for row in database.exec(query))
 
     def count(self, table: Any) -> int:
         with self.store.read() as database:
@@ -231,6 +237,36 @@ async def test_on_a_nearly_full_disk_the_oldest_are_binned_and_purged_after_an_h
         await keeper.retention.apply(NOW + 2 * BIN_SECONDS)
     assert len(keeper.names()) == 2
     assert len([text for text in keeper.told if "Disk space is short" in text]) == 1
+
+
+async def test_where_space_is_short_the_oldest_films_go_before_any_session(
+    monkeypatch: pytest.MonkeyPatch, store: Store, settings: Settings
+) -> None:
+    free = 10**9
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: Disk(10**10, 0, free))
+    keeper = Keeper(store, settings, SessionsConfig(keep_free=1.0))
+    for index, name in enumerate(("kept", "oldest", "older", "newest")):
+        session = await keeper.record(name, (9 - index) * DAY, stop=False)
+        for number in range(50):
+            keeper.recorder.add(film_block(number, 50.0 + number, bytes(20_000)))
+        await keeper.recorder.stop(session)
+    await keeper.catalogue.change(1, kept=True)
+    before = [keeper.catalogue.find(number) for number in (1, 2, 3, 4)]
+    free = 10**9 - 1_500_000
+    await keeper.retention.apply(NOW)
+    assert keeper.names() == ["newest", "older", "oldest", "kept"]
+    gaps = keeper.gaps()
+    assert gaps == [(2, "film", "removed", 50), (3, "film", "removed", 50)]
+    for number, row in zip((1, 2, 3, 4), before, strict=True):
+        counts = Recording(store, find_row(store, number)).counts()
+        assert counts == {"depth": 300} | ({} if number in (2, 3) else {"film": 50})
+        now = keeper.catalogue.find(number)
+        assert now.samples == sum(counts.values())
+        assert row.bytes - now.bytes == pytest.approx(1_000_000 if number in (2, 3) else 0, abs=2000)
+    assert [text for text in keeper.told if "film" in text] == [
+        "Less than 1 GB of the disk are free: the film of “oldest”, “older” was removed; the samples remain. "
+        "To keep a film, mark its session as kept."
+    ]
 
 
 def test_free_space_is_read_from_the_real_disk(store: Store, settings: Settings) -> None:

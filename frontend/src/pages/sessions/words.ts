@@ -11,5 +11,6 @@ export function gapWords(gap: Gap): string {
   if (gap.kind === 'missed') return texts.gaps.missed(samples, gap.topic);
   if (gap.kind === 'restarted') return texts.gaps.restarted(gap.topic);
   if (gap.kind === 'not stored') return texts.gaps.notStored(samples, gap.topic);
+  if (gap.kind === 'removed') return texts.gaps.removed(count(gap.missed));
   return texts.gaps.damaged(samples, gap.topic);
 }
