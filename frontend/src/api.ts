@@ -239,6 +239,7 @@ export const api = {
   undoCraft: () => ask(server.POST('/api/identification/undo')),
   tuningRuns: (loop: LoopName) => ask(server.GET('/api/tuning/runs', { params: { query: { loop } } })),
   tuningRun: (run: number) => ask(server.GET('/api/tuning/runs/{run}', { params: { path: { run } } })),
+  predictStep: (body: schemas.PredictionQuery) => ask(server.POST('/api/tuning/prediction', { body, fetch: within(TIMEOUT_PAST) })),
   startTuning: (body: TuningStart) => command(robot.POST('/api/tuning/runs', { body })),
   stopTuning: (run: number) => command(robot.POST('/api/tuning/stop', { params: { query: { run } } })),
   renameTuning: (run: number, name: string) => command(server.PATCH('/api/tuning/runs/{run}', { params: { path: { run } }, body: { name } })),

@@ -26,7 +26,7 @@ def describe(
 
 
 class FigureMark(BaseModel):
-    """The position of a figure in the chart of the depth: s since the session's start, and m."""
+    """The position of a figure in its chart: s since the session's start or the step, and m or degrees."""
 
     start: float
     end: float

@@ -24,8 +24,7 @@ class View:
 
 PAGES = (
     View("operate", "operate", "Camera"),
-    View("tune-response", "tune/response", "Tune"),
-    View("tune-relay", "tune/relay", "Tune"),
+    View("tune-bench", "tune/bench", "Tune"),
     View("tune-parameters", "tune/parameters", "Tune"),
     View("tune-craft", "tune/craft", "Tune"),
     View("tune-vision", "tune/vision", "Tune"),

@@ -10,10 +10,11 @@ from playwright.sync_api import Browser, Page, expect
 from tests.browser.driving import hold_to_arm
 from tests.browser.people import somebody
 from tests.stack import Stack
+from tests.waiting import wait_for
 
 
 def arm(page: Page) -> None:
-    hold_to_arm(page, page.get_by_role("button", name=re.compile("^Run the"), disabled=False))
+    hold_to_arm(page, page.get_by_role("button", name="Run the step", disabled=False))
 
 
 def fill(page: Page, **values: str) -> None:
@@ -31,8 +32,8 @@ def empty(stack: Stack) -> Stack:
 
 def test_a_step_is_run_and_stored(empty: Stack, any_page: Page) -> None:
     page = any_page
-    page.goto(f"{empty.url}/#/tune/response")
-    expect(page.get_by_text("No step response yet")).to_be_visible()
+    page.goto(f"{empty.url}/#/tune/bench")
+    expect(page.get_by_text("No run yet")).to_be_visible()
     page.get_by_text("Limits and waiting").click()
     fill(page, Start="0.2", Target="0.4", Duration="3", Longest_wait="1")
     arm(page)
@@ -53,7 +54,7 @@ def test_a_step_is_run_and_stored(empty: Stack, any_page: Page) -> None:
     expect(figures.get_by_role("columnheader", name=re.compile("in tap water$"))).to_be_visible()
     runs.get_by_role("button", name=re.compile("^Delete .* in tap water$")).click()
     runs.get_by_role("button", name="Delete permanently").click()
-    expect(page.get_by_text("No step response yet")).to_be_visible()
+    expect(page.get_by_text("No run yet")).to_be_visible()
 
 
 @pytest.fixture
@@ -67,10 +68,11 @@ def depth(stack: Stack) -> Iterator[dict[str, Any]]:
         stack.api.post("/robot/commands/loop", json={"name": "depth", **change}).raise_for_status()
 
 
-def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
+def test_a_relay_gives_gains_that_a_step_tries_and_back_returns_from(
     depth: dict[str, Any], empty: Stack, page: Page, browser: Browser
 ) -> None:
-    page.goto(f"{empty.url}/#/tune/relay")
+    page.goto(f"{empty.url}/#/tune/bench")
+    page.get_by_text("Relay", exact=True).click()
     fill(page, **{"Centre": "0.3", "Command_±": "100", "Cycles": "3"})
     arm(page)
     page.get_by_role("button", name="Run the relay").click()
@@ -79,20 +81,17 @@ def test_a_relay_gives_gains_that_are_shown_before_they_are_applied(
     assert empty.api.get("/robot").json()["loops"][0] == depth
 
     with somebody(browser, empty, "viewer") as other:
-        other.goto(f"{empty.url}/#/tune/relay")
-        expect(other.get_by_role("button", name="Apply the gains by Tyreus–Luyben")).to_be_disabled()
+        other.goto(f"{empty.url}/#/tune/bench")
+        other.get_by_role("button", name="Set the sliders to the gains by Tyreus–Luyben").click()
+        expect(other.get_by_role("button", name="Keep")).to_be_disabled()
         expect(other.get_by_role("button", name=re.compile("^Delete"))).to_be_disabled()
 
-    row = table.get_by_role("row", name=re.compile("^Tyreus–Luyben"))
-    proposed = row.get_by_role("cell").nth(0).inner_text()
-    row.get_by_role("button", name="Apply").click()
-    expect(page.get_by_text("PID active with the gains by Tyreus–Luyben.")).to_be_visible()
-    present = table.get_by_role("row", name=re.compile("^Present gains"))
-    expect(present).to_contain_text(proposed)
-    expect(present).to_contain_text("Active now.")
-
-    page.get_by_role("button", name="Test with a step").click()
-    expect(page.get_by_role("heading", name="Tune")).to_be_visible()
+    table.get_by_role("button", name="Set the sliders to the gains by Tyreus–Luyben").click()
+    page.get_by_role("button", name="Run the step").click()
     expect(page.get_by_text("Step response on depth")).to_be_visible()
+    assert empty.api.get("/robot").json()["loops"][0]["controller"] == "pid"
     page.get_by_role("button", name="STOP").click()
     expect(page.get_by_role("region", name="Runs", exact=True)).to_contain_text("The robot was disarmed.")
+    page.get_by_role("button", name="Back", exact=True).click()
+    expect(page.get_by_text("The gains of before are in force.")).to_be_visible()
+    wait_for(lambda: empty.api.get("/robot").json()["loops"][0] == depth, "the gains of before")

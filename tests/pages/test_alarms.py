@@ -39,7 +39,7 @@ def with_an_alarm(message: bytes) -> bytes:
     return changed
 
 
-@pytest.mark.parametrize("address", ["missions/edit/two_depths", "tune/response", "tune/relay", "system"])
+@pytest.mark.parametrize("address", ["missions/edit/two_depths", "tune/bench", "system"])
 def test_alarms_are_acknowledged_where_they_forbid_arming(page: Page, site: DiveSite, address: str) -> None:
     def hand_on(socket: WebSocketRoute) -> None:
         def change(message: str | bytes) -> None:

@@ -1,15 +1,14 @@
 """Navigation: each page has its title, its heading gets the focus, and the current tab is in view."""
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState, expect
+from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
-from tests.browser.opening import PHONE
 from tests.browser.pages import PAGES, fill, show
 from tests.browser.site import Site
 
+NARROW: ViewportSize = {"width": 300, "height": 640}
 TABS = {
-    "response": "Step response",
-    "relay": "Automatic tuning",
+    "bench": "Bench",
     "parameters": "Parameters",
     "vision": "Vision",
 }
@@ -55,7 +54,7 @@ def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> N
 
 
 def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, site: Site) -> None:
-    page.goto(f"{site.url}/#/tune/response")
+    page.goto(f"{site.url}/#/tune/bench")
     tab = page.get_by_role("navigation", name="Tuning views").get_by_role("link", name="Parameters")
     tab.focus()
     tab.press("Enter")
@@ -63,10 +62,10 @@ def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, site: S
     expect(tab).to_be_focused()
 
 
-def test_the_current_tab_of_tune_is_in_view_on_a_phone(
+def test_the_current_tab_of_tune_is_in_view_where_there_is_little_room(
     browser: Browser, site: Site, cookies: StorageState
 ) -> None:
-    context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True)
+    context = browser.new_context(viewport=NARROW, storage_state=cookies, has_touch=True)
     page = context.new_page()
     for address, name in TABS.items():
         page.goto(f"{site.url}/#/tune/{address}")
@@ -77,6 +76,6 @@ def test_the_current_tab_of_tune_is_in_view_on_a_phone(
     # The last one: there is more before it, and that shows.
     assert "gradient" in str(tabs.evaluate("(one) => getComputedStyle(one).maskImage"))
     page.set_viewport_size({"width": 1440, "height": 900})
-    expect(tabs.get_by_role("link", name="Step response")).to_be_in_viewport(ratio=1)
+    expect(tabs.get_by_role("link", name="Bench")).to_be_in_viewport(ratio=1)
     page.wait_for_function("(one) => getComputedStyle(one).maskImage === 'none'", arg=tabs.element_handle())
     context.close()

@@ -201,6 +201,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/tuning/runs"): "viewer",
     ("POST", "/api/tuning/runs"): "control",
     ("POST", "/api/tuning/stop"): "control",
+    ("POST", "/api/tuning/prediction"): "viewer",
     ("GET", "/api/tuning/runs/{run}"): "viewer",
     ("PATCH", "/api/tuning/runs/{run}"): "operator",
     ("DELETE", "/api/tuning/runs/{run}"): "operator",

@@ -375,6 +375,9 @@ export interface paths {
     "/api/tags": {
         get: operations["listTags"];
     };
+    "/api/tuning/prediction": {
+        post: operations["predictStep"];
+    };
     "/api/tuning/runs": {
         get: operations["listTuningRuns"];
         post: operations["startTuningRun"];
@@ -1213,7 +1216,7 @@ export interface components {
              */
             words: string;
         };
-        /** @description The position of a figure in the chart of the depth: s since the session's start, and m. */
+        /** @description The position of a figure in its chart: s since the session's start or the step, and m or degrees. */
         FigureMark: {
             end: number;
             high: number | null;
@@ -2003,6 +2006,27 @@ export interface components {
             measured: (number | null)[];
             name: string;
             unit: string;
+        };
+        /** @description A predicted step response: at most 30 s after the step. */
+        PredictedStep: {
+            curve: components["schemas"]["TuningCurve"];
+            /** @description by name, as of a run */
+            figures: {
+                [key: string]: components["schemas"]["Figure"];
+            };
+            /** @description title of the craft that was simulated */
+            model: string;
+            /** @description why it ended early; empty if it did not */
+            problem: string;
+        };
+        /** @description A step, with the controller and the gains by which it is predicted. */
+        PredictionQuery: {
+            controller: string;
+            /** @description by name; what is left out has its default */
+            gains: {
+                [key: string]: number;
+            };
+            step: components["schemas"]["StepStart"];
         };
         /** @description The firmware that was on the board before the last upload of another one. */
         PreviousFirmware: {
@@ -3196,6 +3220,8 @@ export type PictureBytes = components['schemas']['PictureBytes'];
 export type PlacedPanel = components['schemas']['PlacedPanel'];
 export type PlannedMissionStep = components['schemas']['PlannedMissionStep'];
 export type PredictedChannel = components['schemas']['PredictedChannel'];
+export type PredictedStep = components['schemas']['PredictedStep'];
+export type PredictionQuery = components['schemas']['PredictionQuery'];
 export type PreviousFirmware = components['schemas']['PreviousFirmware'];
 export type Problem = components['schemas']['Problem'];
 export type Profile = components['schemas']['Profile'];
@@ -5335,6 +5361,21 @@ export interface operations {
             200: {
                 content: {
                     "application/json": string[];
+                };
+            };
+        };
+    };
+    predictStep: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PredictionQuery"];
+            };
+        };
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["PredictedStep"];
                 };
             };
         };

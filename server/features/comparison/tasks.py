@@ -1,7 +1,6 @@
 """The tasks of the comparing process, and their answers."""
 
 import json
-import sys
 import traceback
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -16,6 +15,7 @@ from server.analysis.study import Spectrum, StudyQuery
 from server.analysis.track import SwumTrack
 from server.platform.errors import ApiError, UnavailableError
 from server.platform.store import Reader
+from server.processes.task_process import write_answer
 
 TOO_LARGE = "This takes more memory than it may. Choose fewer sessions, or fewer signals."
 
@@ -90,21 +90,15 @@ def answer_all(database: Path, tasks: Iterable[bytes]) -> None:
     for line in tasks:
         asked = json.loads(line)
         try:
-            _answer(200, TASKS[asked["task"]](comparer, asked["query"]))
+            write_answer(200, TASKS[asked["task"]](comparer, asked["query"]))
         except ApiError as problem:
-            _answer(problem.status, problem.detail.encode())
+            write_answer(problem.status, problem.detail.encode())
         except MemoryError:
             # What the caches hold would be in the way of all that follows.
             comparer = Comparer(reader)
-            _answer(422, TOO_LARGE.encode())
+            write_answer(422, TOO_LARGE.encode())
         except Exception as problem:
             # Whatever it is, the server says it, and the next task is answered.
             traceback.print_exc()
             why = f"The sessions cannot be compared: {type(problem).__name__}: {problem}"
-            _answer(UnavailableError.status, why.encode(errors="replace"))
-
-
-def _answer(status: int, body: bytes) -> None:
-    head = json.dumps({"status": status, "bytes": len(body)}).encode()
-    sys.stdout.buffer.write(head + b"\n" + body)
-    sys.stdout.buffer.flush()
+            write_answer(UnavailableError.status, why.encode(errors="replace"))

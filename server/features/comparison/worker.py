@@ -1,18 +1,14 @@
 """The process `python -m server.features.comparison`: a comparison would block the server for seconds."""
 
 import asyncio
-import json
-import sys
-from asyncio.subprocess import PIPE, Process
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal
 
 from robot_runtime.transport.lifetime import memory_bytes
 from server.platform.errors import UnavailableError
 from server.platform.settings import DataFolder
-from server.processes.exit_status import describe_status
+from server.processes.task_process import TaskProcess, TaskProcessEndedError
 
 Task = Literal["compare", "lines", "signals", "report", "story", "track", "story_figures", "spectrum", "pair"]
 
@@ -45,7 +41,7 @@ class ComparisonWorker:
     def __init__(self, folder: DataFolder) -> None:
         self._database = folder.database
         self._turn = asyncio.Lock()
-        self._process: Process | None = None
+        self._process: TaskProcess | None = None
         self._idle: asyncio.TimerHandle | None = None
         self._preparing: asyncio.Task[None] | None = None
         self._leaving: asyncio.Task[None] | None = None
@@ -67,10 +63,9 @@ class ComparisonWorker:
         async with self._turn:
             if self._idle is not None:
                 self._idle.cancel()
-            if self._process is None or self._process.returncode is not None:
+            if self._process is None or self._process.ended:
                 self._process = await _start(self._database)
-            async with _ending_if_unfinished(self._process):
-                answer = await _ask(self._process, task, query, SECONDS_MAX)
+            answer = await _ask(self._process, task, query, SECONDS_MAX)
             if self._preparing is None:
                 self._idle = asyncio.get_running_loop().call_later(IDLE_SECONDS, self._end_idle)
         return _read(*answer)
@@ -78,9 +73,8 @@ class ComparisonWorker:
     async def report(self, query: str) -> bytes:
         """Return a report as HTML, by its query as JSON. Raise ComparisonError."""
         process = await _start(self._database)
-        async with _ending_if_unfinished(process):
-            answer = await _ask(process, "report", query, REPORT_SECONDS_MAX)
-        await _end(process)
+        answer = await _ask(process, "report", query, REPORT_SECONDS_MAX)
+        await process.end()
         return _read(*answer)
 
     async def close(self) -> None:
@@ -92,46 +86,38 @@ class ComparisonWorker:
         if self._idle is not None:
             self._idle.cancel()
         if self._process is not None:
-            await _end(self._process)
+            await self._process.end()
 
     def _end_idle(self) -> None:
         if self._process is not None and not self._turn.locked():
-            self._leaving = asyncio.create_task(_end(self._process))
+            self._leaving = asyncio.create_task(self._process.end())
             self._process = None
 
 
-async def _start(database: Path) -> Process:
-    command = [sys.executable, "-m", "server.features.comparison", str(database)]
+async def _start(database: Path) -> TaskProcess:
     try:
-        return await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
+        return await TaskProcess.start("server.features.comparison", str(database))
     except OSError as problem:
         raise ComparisonError(
             f"The sessions cannot be compared: no process can be started for it ({problem.strerror})."
         ) from problem
 
 
-async def _ask(process: Process, task: Task, query: str, seconds: float) -> tuple[int, bytes]:
+async def _ask(process: TaskProcess, task: Task, query: str, seconds: float) -> tuple[int, bytes]:
     """Return status and body of the answer.
 
     Raise ComparisonError where the process ends or takes too long.
     """
-    assert process.stdin is not None
-    assert process.stdout is not None
     try:
-        async with asyncio.timeout(seconds):
-            process.stdin.write(json.dumps({"task": task, "query": query}).encode() + b"\n")
-            await process.stdin.drain()
-            head = json.loads(await process.stdout.readuntil())
-            return head["status"], await process.stdout.readexactly(head["bytes"])
+        return await process.ask({"task": task, "query": query}, seconds)
     except TimeoutError:
         raise ComparisonError(
             f"Comparing these sessions was given up after {seconds:.0f} s. Choose fewer sessions or signals."
         ) from None
-    except (asyncio.IncompleteReadError, ConnectionError):
-        status = await process.wait()
+    except TaskProcessEndedError as end:
         raise ComparisonError(
-            f"The sessions cannot be compared: the process that does it {describe_status(status)}. The "
-            "computer may lack memory. Try again, with fewer sessions or signals."
+            f"The sessions cannot be compared: the process that does it {end}. The computer may lack memory. "
+            "Try again, with fewer sessions or signals."
         ) from None
 
 
@@ -139,22 +125,3 @@ def _read(status: int, body: bytes) -> bytes:
     if status != 200:
         raise ComparisonError(body.decode(), status)
     return body
-
-
-@asynccontextmanager
-async def _ending_if_unfinished(process: Process) -> AsyncIterator[None]:
-    """End a process whose answer was not read to its end: the next one would read its rest."""
-    try:
-        yield
-    except BaseException:
-        await _end(process)
-        raise
-
-
-async def _end(process: Process) -> None:
-    if process.returncode is None:
-        process.kill()
-    assert process.stdin is not None
-    process.stdin.close()
-    # `wait` would never return where a pipe is full, and nobody reads it any more.
-    await process.communicate()

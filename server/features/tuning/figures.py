@@ -6,7 +6,7 @@ import numpy as np
 
 from server.features.tuning.curve import SampleBuffer, TuningCurve
 from server.features.tuning.figure_definitions import is_angle, near
-from server.metrics.figure import Figure
+from server.metrics.figure import Figure, FigureMark
 from server.metrics.series import Floats, Series, effort, integral_absolute, rms, travel
 from server.metrics.step_response import StepResponse, measure_step
 from server.metrics.strokes import count_strokes
@@ -55,20 +55,38 @@ def _step_figures(share: StepResponse | None, near: StepResponse | None) -> dict
     if share is None or near is None:
         none = Figure(value=None, words="The value was at the set point before the step.")
         return dict.fromkeys(("rise_time", "overshoot", "settling_share", "settling_near"), none)
-    unsettled = "The value did not stay in the band until the end."
+    rise = Figure(
+        value=share.rise_time,
+        words="" if share.rise_time is not None else "The value never came to 90 % of the step.",
+    )
+    if share.rise_start is not None and share.rise_end is not None:
+        height = share.final_value - share.start_value
+        low, high = sorted(share.start_value + part * height for part in (0.1, 0.9))
+        rise.mark = FigureMark(start=share.rise_start, end=share.rise_end, low=low, high=high)
+    overshoot = Figure(value=100 * share.overshoot)
+    if share.peak is not None and share.peak_time is not None:
+        low, high = sorted((share.final_value, share.peak))
+        overshoot.mark = FigureMark(start=share.begin, end=share.peak_time, low=low, high=high)
     return {
-        "rise_time": Figure(
-            value=share.rise_time,
-            words="" if share.rise_time is not None else "The value never came to 90 % of the step.",
-        ),
-        "overshoot": Figure(value=100 * share.overshoot),
-        "settling_share": Figure(
-            value=share.settling_time, words="" if share.settled is not None else unsettled
-        ),
-        "settling_near": Figure(
-            value=near.settling_time, words="" if near.settled is not None else unsettled
-        ),
+        "rise_time": rise,
+        "overshoot": overshoot,
+        "settling_share": _settling(share),
+        "settling_near": _settling(near),
     }
+
+
+def _settling(response: StepResponse) -> Figure:
+    final, band = response.final_value, response.band
+    return Figure(
+        value=response.settling_time,
+        words="" if response.settled is not None else "The value did not stay in the band until the end.",
+        mark=FigureMark(
+            start=response.begin,
+            end=response.end if response.settled is None else response.settled,
+            low=final - band,
+            high=final + band,
+        ),
+    )
 
 
 def _strokes(samples: SampleBuffer, began: float, ended: float) -> Figure:

@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 from robot_runtime.clock import Clock
 from server.driving.changes import Changes
 from server.feature import Plug
+from server.features.tuning.predictor import StepPredictor
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import TuningStore
 from server.health.occupation import Occupation
@@ -34,9 +35,10 @@ class TuningPlug(Plug):
 
     makers: ClassVar[tuple[Maker, ...]] = (make_runner,)
 
-    def __init__(self, tuning: TuningRunner, runs: TuningStore, feed: Feed) -> None:
+    def __init__(self, tuning: TuningRunner, runs: TuningStore, predictor: StepPredictor, feed: Feed) -> None:
         self._tuning = tuning
         self._runs = runs
+        self._predictor = predictor
         feed.listen(tuning.see)
 
     async def open(self) -> None:
@@ -52,5 +54,6 @@ class TuningPlug(Plug):
         return (self._tuning.run(),)
 
     async def stop(self) -> None:
-        """End the running experiment, and store it."""
+        """End the running experiment, store it, and end the process of the predictions."""
         await self._tuning.close()
+        await self._predictor.close()

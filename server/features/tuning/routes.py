@@ -1,13 +1,17 @@
 """Tuning: step responses and relay experiments on the running robot, and their stored runs."""
 
 from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import Response
 
 from robot_runtime.contract.limits import LoopName
 from server.driving.changes import COMMAND_ERRORS
 from server.features.tuning.figure_definitions import meanings
+from server.features.tuning.predictor import PredictionError, StepPredictor
 from server.features.tuning.runner import TuningRunner
 from server.features.tuning.runs import UnknownTuningRunError
 from server.features.tuning.schemas import (
+    PredictedStep,
+    PredictionQuery,
     Start,
     TuningName,
     TuningRunDetail,
@@ -16,6 +20,7 @@ from server.features.tuning.schemas import (
     TuningState,
 )
 from server.http.dependencies import Provided
+from server.http.heavy_requests import TooManyHeavyError, Turn
 from server.http.operations import Identifier, MeantNumber, Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
@@ -46,6 +51,14 @@ async def start_tuning_run(tuning: Provided[TuningRunner], caller: Caller, body:
 async def stop_tuning_run(tuning: Provided[TuningRunner], run: MeantNumber = None) -> None:
     """Stop the active run and store its measurements; the robot stays armed."""
     await tuning.stop(run)
+
+
+@router.operation(
+    "POST /prediction", Need.VIEWER, TooManyHeavyError, PredictionError, response_model=PredictedStep
+)
+async def predict_step(_: Turn, predictor: Provided[StepPredictor], body: PredictionQuery) -> Response:
+    """Predict a step response by simulating it; the robot does nothing."""
+    return Response(await predictor.predict(body), media_type="application/json")
 
 
 @router.operation("GET /runs/{run}", Need.VIEWER, UnknownTuningRunError, ConflictError)

@@ -20,6 +20,7 @@ from server.features.tuning.curve import SampleBuffer
 from server.features.tuning.figure_definitions import is_angle
 from server.features.tuning.runs import TuningStore
 from server.features.tuning.schemas import (
+    ENDED,
     ActiveTuning,
     ControllerInForce,
     RelayStart,
@@ -41,7 +42,6 @@ SILENCE_SECONDS = 5.0
 CHECK_SECONDS = 1.0
 PID = "pid"
 SERVER = "the server"
-ENDED = ("complete", "stopped", "failed")
 
 
 @dataclass(slots=True)

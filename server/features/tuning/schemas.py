@@ -24,6 +24,8 @@ from server.features.tuning.curve import TuningCurve
 from server.http.request_body import RequestBody
 from server.metrics.figure import Figure, FigureMeaning
 
+ENDED = ("complete", "stopped", "failed")
+"""The phases in which an experiment is over."""
 RunState = Literal["running", "complete", "stopped", "failed", "interrupted"]
 RunName = Annotated[str, Field(min_length=1, max_length=100)]
 Value = Annotated[FiniteFloat, Field(ge=-20, le=20, description="m, of an angle rad")]
@@ -173,3 +175,20 @@ class TuningState(BaseModel):
 
     active: ActiveTuning | None
     last: TuningRun | None
+
+
+class PredictionQuery(RequestBody):
+    """A step, with the controller and the gains by which it is predicted."""
+
+    step: StepStart
+    controller: str
+    gains: dict[str, FiniteFloat] = Field(description="by name; what is left out has its default")
+
+
+class PredictedStep(BaseModel):
+    """A predicted step response: at most 30 s after the step."""
+
+    model: str = Field(description="title of the craft that was simulated")
+    problem: str = Field(description="why it ended early; empty if it did not")
+    figures: dict[str, Figure] = Field(description="by name, as of a run")
+    curve: TuningCurve

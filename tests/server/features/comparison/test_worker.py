@@ -21,6 +21,7 @@ from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Reader, Store
+from server.processes import task_process
 from tests.server.analysis.dives import dive, record
 from tests.server.serving import Served, serve
 from tests.server.waiting import SECONDS, alive, until
@@ -126,7 +127,7 @@ async def test_what_fails_or_exceeds_its_limits_is_an_error_in_words_and_the_nex
     why: str,
     served: Served,
 ) -> None:
-    monkeypatch.setattr(worker, "sys", python(work))
+    monkeypatch.setattr(task_process, "sys", python(work))
     monkeypatch.setattr(worker, "SECONDS_MAX", seconds)
     monkeypatch.setattr(worker, "REPORT_SECONDS_MAX", seconds)
     for answer in (await ask(served, session), await compare(served, session)):
@@ -140,7 +141,7 @@ async def test_a_killed_process_is_started_again(session: int, served: Served) -
     process = served.get(ComparisonWorker)._process
     assert process is not None
     os.kill(process.pid, signal.SIGKILL)
-    await process.wait()
+    await until(lambda: process.ended, "its end")
     assert (await compare(served, session)).json() == before.json()
     assert process_of(served) != process.pid
 
@@ -148,7 +149,7 @@ async def test_a_killed_process_is_started_again(session: int, served: Served) -
 async def test_a_process_that_is_killed_while_it_compares_is_told_in_words(
     session: int, python: Python, monkeypatch: pytest.MonkeyPatch, served: Served
 ) -> None:
-    monkeypatch.setattr(worker, "sys", python("time.sleep(3600)"))
+    monkeypatch.setattr(task_process, "sys", python("time.sleep(3600)"))
     asking = asyncio.create_task(compare(served, session))
     await until(lambda: served.get(ComparisonWorker)._process is not None, "the process")
     os.kill(process_of(served), signal.SIGKILL)
@@ -195,7 +196,7 @@ async def test_a_report_ends_with_the_connection_of_its_receiver(
     work = f"import os; open({str(begun)!r}, 'w').write(str(os.getpid())); time.sleep(3600)"
 
     async with serve(settings) as served:
-        monkeypatch.setattr(worker, "sys", python(work))
+        monkeypatch.setattr(task_process, "sys", python(work))
         asking = asyncio.create_task(ask(served, session))
         await until(lambda: begun.exists() and begun.read_text(), "the report to be begun")
         pid = int(begun.read_text())
@@ -220,7 +221,7 @@ async def test_a_report_whose_receiver_hangs_up_while_it_is_read_holds_up_no_oth
 
     async with serve(settings) as served:
         with monkeypatch.context() as faked:
-            faked.setattr(worker, "sys", python(work))
+            faked.setattr(task_process, "sys", python(work))
             asking = asyncio.create_task(ask(served, session))
             await until(begun.exists, "the answer to be read")
             asking.cancel()
@@ -235,7 +236,7 @@ async def test_no_process_is_left_and_a_missing_interpreter_is_an_error_in_words
     process = comparison._process
     assert process is not None
     await comparison.close()
-    assert process.returncode == -signal.SIGKILL
-    monkeypatch.setattr(worker, "sys", SimpleNamespace(executable="/nowhere/python"))
+    assert process.ended
+    monkeypatch.setattr(task_process, "sys", SimpleNamespace(executable="/nowhere/python"))
     with pytest.raises(ComparisonError, match="no process can be started"):
         await ComparisonWorker(settings.data).ask("signals", str(session))

@@ -5,7 +5,7 @@ from typing import Any
 from robot_runtime.contract.documents import Control, Experiment
 from robot_runtime.contract.packets import Motor
 from robot_runtime.contract.topics import CONTROL, EXPERIMENT, MOTOR
-from server.features.tuning.curve import SampleBuffer
+from server.features.tuning.curve import SampleBuffer, TuningCurve
 from server.features.tuning.evaluation import measure_run
 from server.features.tuning.schemas import MeasuredLimitCycle, RelayStart, StepStart
 from tests.runtime.control.flight import Flight
@@ -20,6 +20,8 @@ class TuningRig:
         self.flight = flight
         self._gathering = SampleBuffer("depth")
         self._told: list[Experiment] = []
+        self.curve = TuningCurve([], [], [], [])
+        """Of the last experiment."""
         bus = flight.robot.bus
         bus.on_row(CONTROL, self._tick)
         bus.on_row(MOTOR, self._fins)
@@ -68,7 +70,7 @@ class TuningRig:
             starts.setdefault(message.phase, message.since)
         end = self._told[-1]
         assert end.phase == "complete", end.text
-        result, _, problem = measure_run(expected, self._gathering, starts, "complete", "")
+        result, self.curve, problem = measure_run(expected, self._gathering, starts, "complete", "")
         assert problem == ""
         return result
 

@@ -182,3 +182,19 @@ def test_curves_are_stored_unchanged(ticks: list[tuple[float, float, float, floa
         curve.add(*tick)
     assert TuningCurve.from_bytes(curve.to_bytes()) == curve
     assert TuningCurve.from_bytes(b"") == TuningCurve([], [], [], [])
+
+
+def test_the_figures_lie_on_the_curve() -> None:
+    curve = second_order(0.4, 2.0)
+    measured = measure_response(curve, SampleBuffer("depth"), "depth", 100.0, 100.0 + SECONDS)
+    marks = {name: mark for name, figure in measured.items() if (mark := figure.mark) is not None}
+    assert marks.keys() == {"rise_time", "overshoot", "settling_share", "settling_near"}
+    rise, over, near = (marks[name] for name in ("rise_time", "overshoot", "settling_near"))
+    assert (rise.low, rise.high) == pytest.approx((FROM + 0.1 * (TO - FROM), FROM + 0.9 * (TO - FROM)))
+    assert np.interp([rise.start, rise.end], curve.times, curve.values) == pytest.approx(
+        [rise.low, rise.high]
+    )
+    assert over.high == max(curve.values)
+    assert np.interp(over.end, curve.times, curve.values) == over.high
+    assert (near.start, near.end) == (0.0, measured["settling_near"].value)
+    assert (near.low, near.high) == pytest.approx((TO - 0.02, TO + 0.02))

@@ -1,5 +1,5 @@
 /** What an experiment is to be, in the shown unit, as the forms hold it and the server takes it. */
-import type { LoopName, TuningStart } from '../../../api';
+import type { LoopName, StepStart, TuningStart } from '../../../api';
 import { tune as texts } from '../../../texts/tune';
 import { loopOf, type Loop } from './loops';
 
@@ -37,6 +37,14 @@ export interface FieldSpec<Name> {
 /** The range of a field's numbers, in the loop's unit. */
 export function rangeOf({ range }: FieldSpec<string>, loop: Loop): readonly [number, number] {
   return range ?? [loop.least, loop.most];
+}
+
+/** Whether each number can be used. */
+export function inRange<Name extends string>(values: Readonly<Record<Name, number>>, fields: readonly FieldSpec<Name>[], loop: Loop): boolean {
+  return fields.every((field) => {
+    const [least, most] = rangeOf(field, loop);
+    return values[field.name] >= least && values[field.name] <= most;
+  });
 }
 
 export const STEP_FIELDS: readonly FieldSpec<keyof StepForm>[] = [
@@ -77,7 +85,7 @@ export function usualRelay(loop: LoopName): RelayForm {
   return { set_point: 0, amplitude: 50, hysteresis: 1, cycles: 4, duration: 120, ...limits };
 }
 
-export function stepStart(loop: LoopName, form: StepForm): TuningStart {
+export function stepStart(loop: LoopName, form: StepForm): StepStart {
   const { factor } = loopOf(loop);
   const { settle, duration, ...values } = form;
   const own = Object.fromEntries(Object.entries(values).map(([name, value]) => [name, value / factor])) as typeof values;

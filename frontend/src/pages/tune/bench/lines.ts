@@ -1,7 +1,8 @@
-import type { ActiveTuning, TuningRunDetail } from '../../../api';
+import type { ActiveTuning, PredictedStep, TuningRunDetail } from '../../../api';
 import type { RowRing } from '../../../live/ring';
 import type { Rings } from '../../../live/store';
 import { sessionColour } from '../../../parts/sessionColour';
+import { token } from '../../../theme.svelte';
 import type { CurveLine } from './curvePlot';
 import type { Loop } from './loops';
 import { runTitle } from './words';
@@ -11,17 +12,17 @@ import { tune as texts } from '../../../texts/tune';
 const LEAD = 3;
 const TURNING = ['heading', 'pitch', 'roll'];
 
-export function keptLine(run: TuningRunDetail, place: number, theme: 'dark' | 'sunlight', loop: Loop): CurveLine {
-  const scaled = (values: readonly number[]) => values.map((value) => value * loop.factor);
-  const { times, set_points, values, outputs } = run.curve;
-  return {
-    label: runTitle(run),
-    colour: sessionColour(place, theme),
-    times,
-    setPoints: scaled(set_points),
-    values: scaled(values),
-    outputs,
-  };
+export function keptLine(run: TuningRunDetail, place: number, theme: 'dark' | 'sunlight', loop: Loop, chosen: boolean): CurveLine {
+  return { label: runTitle(run), colour: sessionColour(place, theme), look: chosen ? 'full' : 'pale', ...scaled(run.curve, loop) };
+}
+
+export function predictedLine({ curve, model }: PredictedStep, loop: Loop): CurveLine {
+  return { label: texts.curves.predicted(model), colour: token('muted'), look: 'ghost', ...scaled(curve, loop) };
+}
+
+function scaled({ times, set_points, values, outputs }: TuningRunDetail['curve'], loop: Loop) {
+  const shown = (numbers: readonly number[]) => numbers.map((value) => value * loop.factor);
+  return { times, setPoints: shown(set_points), values: shown(values), outputs };
 }
 
 /** What has come of the run that is on. Before its step the times count from now back. */
@@ -29,7 +30,7 @@ export function liveLine(active: ActiveTuning, rings: Rings, now: number, colour
   const waits = active.kind === 'step' && active.phase === 'settling';
   const zero = active.kind === 'relay' ? active.began : waits ? now : active.since;
   const from = active.kind === 'relay' ? active.began : zero - LEAD;
-  const line = { label: texts.curves.live, colour, times: [] as number[], setPoints: [] as number[], values: [] as number[], outputs: [] as number[] };
+  const line = { label: texts.curves.live, colour, look: 'full' as const, times: [] as number[], setPoints: [] as number[], values: [] as number[], outputs: [] as number[] };
   const take = <K extends 'control' | 'turning'>(ring: RowRing<K>, columns: readonly ArrayLike<number>[]) => {
     const [setPoints, values, outputs] = columns;
     for (let order = ring.firstSince(from); order < ring.length; order += 1) {
