@@ -1,4 +1,4 @@
 """The database's history, one revision for each change of `server.platform.models`."""
 
-HEAD = "0012"
+HEAD = "0013"
 """The newest revision: what a database of this version must be at."""

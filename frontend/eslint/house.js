@@ -28,7 +28,7 @@ const LAYERS = [
 ];
 /** Files beside the rooms' folders. */
 const FLOOR = ['address', 'api', 'attitude', 'files', 'flight', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
-const APP = ['App', 'Root', 'lazyPages', 'main'];
+const APP = ['App', 'ReaderPage', 'Root', 'lazyPages', 'main'];
 /** A single panel is reached through the registry (panels/registry.ts), and by the flight view, which shows parts of some. */
 const DOORS = { 'panels/*': ['panels', 'flight'] };
 /** The one page that shows another: a replay is Operate, filled from a recording. */

@@ -99,6 +99,11 @@ export const api = {
   changeDevice: (device: number, body: schemas.DeviceChanges) => command(server.PATCH('/api/access/devices/{device}', { params: { path: { device } }, body })),
   revoke: (device: number) => command(server.DELETE('/api/access/devices/{device}', { params: { path: { device } } })),
   makeToken: (body: schemas.NewToken) => ask(server.POST('/api/access/tokens', { body })),
+  openReadingLink: (token: string) => ask(server.POST('/api/access/read', { body: { token } })),
+  readingLinks: (session: number) => ask(server.GET('/api/access/reading-links', { params: { query: { session } } })),
+  /** `ends` in s since 1970 */
+  makeReadingLink: (session: number, ends: number) => ask(server.POST('/api/access/reading-links', { body: { session, ends } })),
+  endReadingLink: (link: number) => command(server.DELETE('/api/access/reading-links/{link}', { params: { path: { link } } })),
   audit: (query: AuditQuery) => ask(server.GET('/api/audit', { params: { query } })),
   auditFile: (query: AuditQuery) =>
     download(server.GET('/api/audit/csv', { params: { query: { ...query, spreadsheet: ownSpreadsheet() } }, parseAs: 'stream', fetch: within(null) })),

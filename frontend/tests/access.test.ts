@@ -1,11 +1,12 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { Access } from '../src/access/access.svelte';
-import { browserName, codeIn } from '../src/access/code';
+import { browserName, codeIn, readingIn } from '../src/access/code';
+import { linkEnd, readingAddress } from '../src/shell/readingLink';
 import { api } from '../src/api';
 import { nameClient } from '../src/http';
 
-const PERSON = { device: 3, name: 'Firefox on Linux', role: 'operator', kind: 'browser' } as const;
-const ME = { signed_in: true, robot: 'turtle', identity: PERSON, ended: '', pairing_open: false, operators_only: ['startSession'] };
+const PERSON = { device: 3, name: 'Firefox on Linux', role: 'operator', kind: 'browser', limited: false, session: null } as const;
+const ME = { signed_in: true, robot: 'turtle', identity: PERSON, ended: '', pairing_open: false, operators_only: ['startSession'], ends: null };
 const NOBODY = { ...ME, signed_in: false, identity: null };
 let answers: Record<string, () => Response>;
 let sent: Request[];
@@ -183,4 +184,54 @@ describe('a link', () => {
     ['Mozilla/5.0 (Windows NT 10.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/140.0.0.0 Safari/537.36 Edg/140.0.0.0', 'Edge on Windows'],
     ['curl', 'Browser'],
   ])('names a browser', (agent, name) => expect(browserName(agent)).toBe(name));
+});
+
+describe('a reading link', () => {
+  const READER = { device: 7, name: 'reading link for session 3', role: 'viewer', kind: 'reader', limited: false, session: 3 } as const;
+
+  it('stands in what the address says is seen, and nowhere else', () => {
+    expect(readingIn('#/sessions/3?at=12.5&read=AbC_-9')).toBe('AbC_-9');
+    for (const hash of ['', '#/sessions/3', '#/sessions/3?read=', '#read=AbC', '#/sessions/3?reader=AbC']) expect(readingIn(hash)).toBeNull();
+  });
+
+  it('goes behind what else the address says', () => {
+    expect(readingAddress('http://r/#/sessions/3', 'T')).toBe('http://r/#/sessions/3?read=T');
+    expect(readingAddress('http://r/#/sessions/3?at=1', 'T')).toBe('http://r/#/sessions/3?at=1&read=T');
+    expect(readingIn(new URL(readingAddress('http://r/?x=1#/replay/3', 'T')).hash)).toBe('T');
+  });
+
+  it('lets in who is not signed in, until it ends', async () => {
+    answers['GET /api/access/me'] = json(NOBODY);
+    answers['POST /api/access/read'] = json({ ...ME, identity: READER, operators_only: ['startExport'], ends: 2e9, page_secret: 'p' });
+    const access = new Access();
+    await access.open(null, 'x', 'token');
+    expect([access.state, access.reads, access.ends]).toEqual(['in', 3, 2e9]);
+    expect(access.refusal('startExport')).toMatch(/reading link/);
+  });
+
+  it('is not used by who is signed in', async () => {
+    answers['GET /api/access/me'] = json(ME);
+    const access = new Access();
+    await access.open(null, 'x', 'token');
+    expect([access.state, access.reads]).toEqual(['in', null]);
+    expect(asked()).toEqual(['GET /api/access/me']);
+  });
+
+  it('says why it opens nothing, also to who reads by another', async () => {
+    answers['POST /api/access/read'] = json({ detail: 'This reading link ended on Monday.' }, 403);
+    for (const identity of [null, READER]) {
+      answers['GET /api/access/me'] = json({ ...ME, identity, signed_in: identity !== null });
+      const access = new Access();
+      await access.open(null, 'x', 'token');
+      expect([access.state, access.reason]).toEqual(['out', 'This reading link ended on Monday.']);
+    }
+  });
+
+  it('ends after a day, a week, or with a day of the calendar that is not over', () => {
+    const now = new Date('2026-11-29T12:00:00').getTime();
+    expect(linkEnd('day', '', now)).toBe(now / 1000 + 86_400);
+    expect(linkEnd('week', '', now)).toBe(now / 1000 + 604_800);
+    expect(linkEnd('date', '2026-11-29', now)).toBe(new Date('2026-11-29T23:59:59').getTime() / 1000);
+    for (const date of ['', '2026-11-28', 'nonsense', '2026-13-45']) expect(linkEnd('date', date, now)).toBeNull();
+  });
 });

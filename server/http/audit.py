@@ -48,11 +48,11 @@ UNROUTED = "Request"
 BODY_BYTES = 2048
 NOTICE_SECONDS = 1.0
 """The same notice is not written again within this time: a page sends STOP on two ways."""
-SECRETS = frozenset({"code"})
+SECRETS = frozenset({"code", "token"})
 """Entries of a request's body that are not stored."""
 SOCKET_REFUSED = 403
 """Stands for a live socket that was closed before it was accepted."""
-SIGNING = frozenset({"pairBrowser", "signOut"})
+SIGNING = frozenset({"pairBrowser", "signOut", "openReadingLink", "makeReadingLink", "endReadingLink"})
 DELETING = frozenset({"purgeSession", "importSession"})
 """Operations whose entries are with those of other deletions, which are sent as DELETE."""
 QUERY_MAX = 100

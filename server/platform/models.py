@@ -180,7 +180,8 @@ class DeviceRow(SQLModel, table=True):
     """A browser or a program that may come in. Times are UTC (s since 1970); `seen` is kept to the hour.
 
     `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a cookie), "program" (a bearer
-    token), "removed" (no secret; browsers do not get its name). `page_secret` is the SHA-256 of a browser's
+    token), "reader" (the cookie of a reading link, for the session `session_id` alone), "removed" (no secret;
+    browsers do not get its name). `page_secret` is the SHA-256 of a browser's
     second secret, which its page keeps; a browser that was paired before there was one has None, and signs
     in again. `limited` is a token that may not administer, in any role; it never ends where `ends` is None.
     """
@@ -198,6 +199,7 @@ class DeviceRow(SQLModel, table=True):
     limited: bool = False
     ends: float | None = None
     page_secret: str | None = None
+    session_id: int | None = None
 
 
 class ProfileRow(SQLModel, table=True):

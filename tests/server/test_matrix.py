@@ -7,6 +7,7 @@ The table is written here by hand, and knows nothing of the server's own: a rout
 
 import asyncio
 import json
+import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field, replace
@@ -41,6 +42,7 @@ Who = Literal[
     "program that operates",
     "program that administers",
     "thief of a cookie",
+    "reader of another session",
 ]
 Where = Literal["right", "wrong", "missing"]
 METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")
@@ -61,6 +63,10 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PATCH", "/api/access/devices/{device}"): "administer",
     ("DELETE", "/api/access/devices/{device}"): "administer",
     ("POST", "/api/access/tokens"): "administer",
+    ("POST", "/api/access/read"): "anyone",
+    ("GET", "/api/access/reading-links"): "operator",
+    ("POST", "/api/access/reading-links"): "operator",
+    ("DELETE", "/api/access/reading-links/{link}"): "operator",
     ("GET", "/api/audit"): "operator",
     ("GET", "/api/audit/csv"): "operator",
     ("GET", "/api/control"): "viewer",
@@ -223,6 +229,7 @@ LINKED = {
 }
 """Files, pictures and frames that a page names by their address, so that the cookie alone must do."""
 
+READER: Who = "reader of another session"
 ROLES: dict[Who, int] = {
     "anonymous": 0,
     "viewer": 1,
@@ -232,11 +239,14 @@ ROLES: dict[Who, int] = {
     "program that administers": 2,
     "control": 3,
     "thief of a cookie": 0,
+    READER: 0,
 }
 LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3, "administer": 2}
 REFUSALS = {401, 403, 423}
 SAFE = {"GET", "HEAD", "OPTIONS"}
-ABSENT = dict.fromkeys(("session", "run", "device", "layout", "profile", "panel", "mark", "name"), "999")
+ABSENT = dict.fromkeys(
+    ("session", "run", "device", "layout", "profile", "panel", "mark", "name", "link"), "999"
+)
 ABSENT |= {"export": "0" * 16, "path": "index.html"}
 QUERIES = {"/api/control/take": "over=true"}
 """Without it, who is admitted would be refused as long as somebody else has control."""
@@ -248,15 +258,16 @@ def expected(
     who: Who, least: Least, *, safe: bool, host: Where, origin: Where, linked: bool = False
 ) -> int | None:
     """Return the status with which this is refused; None where it is accepted."""
-    browser = who in ("viewer", "operator", "control")
+    reader = who == READER
+    browser = reader or who in ("viewer", "operator", "control")
     if host != "right" or origin == "wrong":
         return 403
     if linked and who == "thief of a cookie":
         return None
-    if ROLES[who] == 0:
-        return None if least == "anyone" else 401
     if browser and origin == "missing" and not safe:
         return 403
+    if ROLES[who] == 0:
+        return None if least == "anyone" else 403 if reader else 401
     if least == "administer" and who == "program that operates":
         return 403
     if ROLES[who] >= LEAST[least]:
@@ -331,6 +342,8 @@ class House:
 
     async def enter(self, who: Who) -> Somebody:
         """Return a requester that has just signed in."""
+        if who == READER:
+            return await self._read()
         verb = who.removeprefix("program that ")
         if verb != who:
             return await self._program(verb.removesuffix("s"))
@@ -341,6 +354,15 @@ class House:
         _, _, report = await self.ask(self.shell, "POST", "/api/access/codes", right, {"role": role})
         request = {"code": json.loads(report)["code"], "name": name}
         status, headers, report = await self.ask(Somebody(), "POST", "/api/access/pair", right, request)
+        assert status == 200
+        return Somebody(signed_in(headers, report))
+
+    async def _read(self) -> Somebody:
+        right = self.places("right", "right")
+        request = {"session": 1, "ends": time.time() + 1000}
+        _, _, report = await self.ask(self.shell, "POST", "/api/access/reading-links", right, request)
+        token = {"token": json.loads(report)["token"]}
+        status, headers, report = await self.ask(Somebody(), "POST", "/api/access/read", right, token)
         assert status == 200
         return Somebody(signed_in(headers, report))
 
@@ -433,7 +455,7 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
             for who in ROLES:
                 if who == "thief of a cookie":
                     house.people[who] = Somebody({"cookie": house.people["operator"].headers["cookie"]})
-                elif who != "anonymous":
+                elif who not in ("anonymous", READER):
                     house.people[who] = await house.enter(who)
             right = house.places("right", "right")
             operator, control = house.people["operator"], house.people["control"]
@@ -442,6 +464,7 @@ async def open_house(settings: Settings) -> AsyncIterator[House]:
                 control.headers["x-mucat-client"] = (await live.hello())["client_key"]
                 # While a session is recorded, no bring-up begins.
                 assert (await house.ask(control, "POST", "/api/sessions", right))[0] == 201
+                house.people[READER] = await house.enter(READER)
                 yield house
 
 

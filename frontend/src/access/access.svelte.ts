@@ -22,6 +22,8 @@ export class Access {
   reason = $state('');
   /** the code of the link that was followed, until it is used; '' where there is none */
   offered = $state('');
+  /** when the reading link ends that lets this page in, s since 1970; null without one */
+  ends = $state<number | null>(null);
   /** the server has not answered so far */
   silent = $state(false);
   readonly confirmation = new Confirmation();
@@ -32,17 +34,43 @@ export class Access {
     onUnconfirmed(() => this.confirmation.ask());
   }
 
-  /** Find out who this is, and use the code of a link where it gives more rights. Who is not signed in is asked for a name first. */
-  async open(code: string | null, name: string): Promise<void> {
+  /** the one session that a reading link shows; null for everybody else */
+  get reads(): number | null {
+    return this.identity?.session ?? null;
+  }
+
+  /**
+   * Find out who this is, and use the code of a link where it gives more rights. Who is not signed in is asked for a name
+   * first, or let in by the token of a reading link.
+   */
+  async open(code: string | null, name: string, reading: string | null = null): Promise<void> {
     let me = await this.#ask();
     while (me === null) {
       await new Promise((resolve) => setTimeout(resolve, LOOK_AGAIN));
       me = await this.#ask();
     }
+    if (reading !== null && me.identity?.session !== null) {
+      await this.#read(reading);
+      return;
+    }
     if (me.identity === null) this.offered = code ?? '';
     const raises = code !== null && me.identity?.role === 'viewer';
     if (raises && (await this.pair(code, name)) === null) return;
     this.#take(me);
+  }
+
+  async #read(token: string): Promise<void> {
+    const answer = await api.openReadingLink(token);
+    if ('problem' in answer) {
+      // The link of before, if there was one, is not what somebody wants to read by now.
+      this.state = 'out';
+      this.identity = null;
+      this.reason = answer.problem;
+      return;
+    }
+    if (answer.value.page_secret !== null) keepSecret(answer.value.page_secret);
+    this.reason = '';
+    this.#take(answer.value);
   }
 
   /** Find out whether this page is signed in still; `reason` is why it may not be. Returns whether the server says so. */
@@ -96,13 +124,14 @@ export class Access {
   /** Why this is not for who uses this page, in words; null where it is. What needs control says so by itself. */
   refusal(operation: Operation): string | null {
     if (this.identity?.role !== 'viewer' || !this.#operatorsOnly.includes(operation)) return null;
-    return texts.operatorOnly;
+    return this.reads === null ? texts.operatorOnly : texts.readerOnly;
   }
 
   #take(me: CallerDetails): void {
     this.#operatorsOnly = me.operators_only;
     this.robot = me.robot;
     this.identity = me.identity;
+    this.ends = me.ends;
     if (this.reason === '') this.reason = me.ended;
     this.state = me.signed_in ? 'in' : 'out';
   }

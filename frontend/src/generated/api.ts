@@ -20,6 +20,16 @@ export interface paths {
     "/api/access/pair": {
         post: operations["pairBrowser"];
     };
+    "/api/access/read": {
+        post: operations["openReadingLink"];
+    };
+    "/api/access/reading-links": {
+        get: operations["listReadingLinks"];
+        post: operations["makeReadingLink"];
+    };
+    "/api/access/reading-links/{link}": {
+        delete: operations["endReadingLink"];
+    };
     "/api/access/sign-out": {
         post: operations["signOut"];
     };
@@ -716,8 +726,10 @@ export interface components {
         CallerDetails: {
             /** @description why the sign-in that was shown counts no longer; else empty */
             ended: string;
+            /** @description end of the caller's token or reading link, s since 1970 */
+            ends: number | null;
             identity: components["schemas"]["Identity"] | null;
-            /** @description names of the operations that viewers may not call */
+            /** @description names of the operations that the caller's role may not call; a reader's are all that do not read the session of the link */
             operators_only: string[];
             pairing_open: boolean;
             robot: string;
@@ -1004,7 +1016,7 @@ export interface components {
             ends: number | null;
             id: number;
             /** @enum {string} */
-            kind: "browser" | "program" | "shell";
+            kind: "browser" | "program" | "reader" | "shell";
             /** @description true for a token that may not administer, in any role */
             limited: boolean;
             name: string;
@@ -1404,19 +1416,21 @@ export interface components {
             words: string;
         };
         /**
-         * @description A caller. `device` is the number of the browser or program that was paired; 0 is the shell.
+         * @description A caller. `device` is the number of the browser, program or reading link; 0 is the shell.
          *
-         *     `limited` is a program that may not administer, also not as an operator.
+         *     `limited` is a program that may not administer, also not as an operator. `session` is the one session that
+         *     a reader may read; None for all others.
          */
         Identity: {
             device: number;
             /** @enum {string} */
-            kind: "browser" | "program" | "shell";
+            kind: "browser" | "program" | "reader" | "shell";
             /** @default false */
             limited: boolean;
             name: string;
             /** @enum {string} */
             role: "viewer" | "operator";
+            session: number | null;
         };
         /** @description An imported profile, and its parameters that this robot does not know. */
         Imported: {
@@ -1565,6 +1579,11 @@ export interface components {
             qr_svg: string;
             /** @enum {string} */
             role: "viewer" | "operator";
+        };
+        /** @description A reading link with its token, which is shown only this once. */
+        MadeReadingLink: {
+            link: components["schemas"]["ReadingLink"];
+            token: string;
         };
         /** @description A program's token, shown only this once. */
         MadeToken: {
@@ -1839,6 +1858,11 @@ export interface components {
             name: string;
             note?: string;
         };
+        /** @description A session, and the end of the link (s since 1970). */
+        NewReadingLink: {
+            ends: number;
+            session: number;
+        };
         /** @description A scenario to be stored. */
         NewScenario: {
             /** @description `mark` of the text that the editing began from, empty for a new scenario: refused if somebody has changed it since. null replaces any */
@@ -1891,8 +1915,10 @@ export interface components {
         Paired: {
             /** @description why the sign-in that was shown counts no longer; else empty */
             ended: string;
+            /** @description end of the caller's token or reading link, s since 1970 */
+            ends: number | null;
             identity: components["schemas"]["Identity"] | null;
-            /** @description names of the operations that viewers may not call */
+            /** @description names of the operations that the caller's role may not call; a reader's are all that do not read the session of the link */
             operators_only: string[];
             /** @description shown only this once; null where the browser was signed in already */
             page_secret: string | null;
@@ -2102,6 +2128,20 @@ export interface components {
             pressure_hpa: number | null;
             /** @description °C */
             temperature: number | null;
+        };
+        /** @description A reading link; times in s since 1970. `used` is null where nobody has opened it. */
+        ReadingLink: {
+            /** @description why it lets nobody in any more; else empty */
+            ended: string;
+            ends: number;
+            id: number;
+            made: number;
+            session: number;
+            used: number | null;
+        };
+        /** @description The token of a reading link. */
+        ReadingToken: {
+            token: string;
         };
         /** @description The robot's values at a moment; null where none was measured within 2 s before. */
         Readings: {
@@ -3174,6 +3214,7 @@ export type LinkFrames = components['schemas']['LinkFrames'];
 export type Loop = components['schemas']['Loop'];
 export type LoopCommand = components['schemas']['LoopCommand'];
 export type MadeCode = components['schemas']['MadeCode'];
+export type MadeReadingLink = components['schemas']['MadeReadingLink'];
 export type MadeToken = components['schemas']['MadeToken'];
 export type MeasureGyroCommand = components['schemas']['MeasureGyroCommand'];
 export type MeasuredLimitCycle = components['schemas']['MeasuredLimitCycle'];
@@ -3201,6 +3242,7 @@ export type NewExport = components['schemas']['NewExport'];
 export type NewLayout = components['schemas']['NewLayout'];
 export type NewMission = components['schemas']['NewMission'];
 export type NewProfile = components['schemas']['NewProfile'];
+export type NewReadingLink = components['schemas']['NewReadingLink'];
 export type NewScenario = components['schemas']['NewScenario'];
 export type NewSession = components['schemas']['NewSession'];
 export type NewToken = components['schemas']['NewToken'];
@@ -3229,6 +3271,8 @@ export type ProfileText = components['schemas']['ProfileText'];
 export type Proposal = components['schemas']['Proposal'];
 export type QueuedRun = components['schemas']['QueuedRun'];
 export type RawReadings = components['schemas']['RawReadings'];
+export type ReadingLink = components['schemas']['ReadingLink'];
+export type ReadingToken = components['schemas']['ReadingToken'];
 export type Readings = components['schemas']['Readings'];
 export type RecordedColumn = components['schemas']['RecordedColumn'];
 export type RecordedCraft = components['schemas']['RecordedCraft'];
@@ -3398,6 +3442,63 @@ export interface operations {
                     "application/json": components["schemas"]["Paired"];
                 };
             };
+        };
+    };
+    openReadingLink: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReadingToken"];
+            };
+        };
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["Paired"];
+                };
+            };
+        };
+    };
+    listReadingLinks: {
+        parameters: {
+            query: {
+                session: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["ReadingLink"][];
+                };
+            };
+        };
+    };
+    makeReadingLink: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewReadingLink"];
+            };
+        };
+        responses: {
+            201: {
+                content: {
+                    "application/json": components["schemas"]["MadeReadingLink"];
+                };
+            };
+        };
+    };
+    endReadingLink: {
+        parameters: {
+            query?: never;
+            path: {
+                link: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            204: { content?: never };
         };
     };
     signOut: {

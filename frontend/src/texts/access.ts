@@ -5,6 +5,7 @@ export const access = {
   signedOut: 'You have signed out.',
   noLongerSignedIn: 'This browser is no longer signed in.',
   operatorOnly: 'Viewers can watch and press STOP. This needs an operator.',
+  readerOnly: 'A reading link shows the session, and changes nothing.',
   confirmation: {
     heading: 'Confirmation needed',
     about: 'This changes who may use the robot, or takes its data. Enter a new operator code; it counts for 10 minutes.',

@@ -69,7 +69,7 @@ export const shell = {
   },
   settings: {
     title: 'Page settings',
-    hint: 'Page settings: theme, sound and shortcuts',
+    hint: 'Page settings: link, theme, sound and shortcuts',
     theme: 'Theme',
     themes: { device: 'Same as device', dark: 'Dark', sunlight: 'Sunlight' },
     shortcuts: 'Single-key shortcuts',

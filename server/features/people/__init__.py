@@ -6,6 +6,7 @@ FEATURE = Feature(
     name="people",
     routes=(
         "server.features.people.routes:router",
+        "server.features.people.reading_links:router",
         "server.features.people.audit:router",
     ),
     commands={

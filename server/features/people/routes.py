@@ -30,7 +30,7 @@ from server.http.sign_in.pairing_codes import (
     WrongConfirmationError,
 )
 from server.http.sign_in.pairing_links import pairing_link, qr_svg
-from server.http.sign_in.policy import Need, list_needs
+from server.http.sign_in.policy import Need, list_refused
 from server.platform.settings import Settings
 
 COOKIE_SECONDS = 400 * 86400
@@ -46,7 +46,7 @@ router = Operations(prefix="/api/access", tags=["access"])
 @router.operation("GET /me", Need.NOTHING)
 async def get_me(request: Request, settings: Provided[Settings], access: Provided[Access]) -> CallerDetails:
     """Return the caller: signed in or not, and in which role."""
-    return _describe_caller(request, settings, access, request.scope[IDENTITY])
+    return describe_caller(request, settings, access, request.scope[IDENTITY])
 
 
 @router.operation("POST /pair", Need.NOTHING, WrongCodeError, TooManyTriesError, TOO_MANY)
@@ -67,15 +67,8 @@ async def pair_browser(
     identity, secrets = await access.pair(body.code, body.name, request.scope[IDENTITY], address)
     request.scope[IDENTITY] = identity
     if secrets is not None:
-        response.set_cookie(
-            access.cookie,
-            secrets.cookie,
-            max_age=COOKIE_SECONDS,
-            httponly=True,
-            samesite="strict",
-            secure=request.url.scheme == "https",
-        )
-    caller = _describe_caller(request, settings, access, identity)
+        set_cookie(request, access, response, secrets.cookie, COOKIE_SECONDS)
+    caller = describe_caller(request, settings, access, identity)
     return Paired(page_secret=None if secrets is None else secrets.page, **dict(caller))
 
 
@@ -166,24 +159,34 @@ async def make_token(access: Provided[Access], caller: Caller, body: NewToken) -
     return MadeToken(token=token, device=_describe(access, caller, device))
 
 
+def set_cookie(request: Request, access: Access, response: Response, secret: str, seconds: int) -> None:
+    """Give the browser its cookie, for so many seconds."""
+    response.set_cookie(
+        access.cookie,
+        secret,
+        max_age=seconds,
+        httponly=True,
+        samesite="strict",
+        secure=request.url.scheme == "https",
+    )
+
+
 def _called(request: Request) -> str:
     return request.headers["host"].rsplit(":", 1)[0].lower()
 
 
-def _describe_caller(
+def describe_caller(
     request: Request, settings: Settings, access: Access, identity: Identity | None
 ) -> CallerDetails:
+    """Return the caller as the page is told of it."""
     return CallerDetails(
         signed_in=identity is not None,
         robot=settings.robot.name,
         identity=identity,
         ended=request.scope.get(SIGN_IN_ENDED, "") if identity is None else "",
         pairing_open=access.codes.any_valid,
-        operators_only=[
-            name
-            for name, need in list_needs(request.app.routes).items()
-            if identity and need is not None and need >= Need.OPERATOR
-        ],
+        operators_only=[] if identity is None else list_refused(request.app.routes, identity),
+        ends=None if identity is None else access.devices.end_of(identity.device),
     )
 
 

@@ -22,7 +22,11 @@ class CallerDetails(BaseModel):
     identity: Identity | None
     ended: Annotated[str, Field(description="why the sign-in that was shown counts no longer; else empty")]
     pairing_open: bool
-    operators_only: list[str] = Field(description="names of the operations that viewers may not call")
+    operators_only: list[str] = Field(
+        description="names of the operations that the caller's role may not call; a reader's are all that do "
+        "not read the session of the link"
+    )
+    ends: float | None = Field(description="end of the caller's token or reading link, s since 1970")
 
 
 class Paired(CallerDetails):

@@ -16,6 +16,7 @@ from server.http.sign_in.devices import BrowserSecrets, Device, Devices, SignInE
 from server.http.sign_in.identity import SHELL, Identity, Role, Scope
 from server.http.sign_in.pairing_codes import PairingCodes, WrongCodeError
 from server.http.sign_in.tokens import digest
+from server.platform.errors import ForbiddenError
 from server.platform.settings import Settings
 from server.platform.store import Store
 
@@ -36,6 +37,16 @@ NO_PAGE_SECRET = (
     "This page has lost its part of the sign-in, as when a browser's stored data are cleared, or after an "
     "update from a version without it. Sign this browser in again."
 )
+
+
+NO_LINK = (
+    "This reading link opens nothing here: it was ended, is not complete, or is of another robot. Ask "
+    "whoever gave it to you for a new one."
+)
+
+
+class LinkEndedError(ForbiddenError):
+    """The reading link has ended, or there never was one"""
 
 
 def cookie_name(port: int) -> str:
@@ -104,7 +115,7 @@ class Access:
             if not header.lower().startswith(BEARER):
                 return None
             return self._find_bearer(header[len(BEARER) :].strip())
-        device = self.devices.find(connection.cookies.get(self.cookie, ""), "browser")
+        device = self.devices.find(connection.cookies.get(self.cookie, ""), "browser", "reader")
         whole = device is None or device.has_page_secret(_page_secret(connection)) or cookie_suffices()
         if not whole:
             raise SignInEndedError(NO_PAGE_SECRET)
@@ -182,6 +193,35 @@ class Access:
         device, token = await self.devices.add_program(name, scope, days)
         self._notify("access", "info", f"“{by.name}” made a token for “{name}”, with the scope {scope}.")
         return device, token
+
+    async def make_link(self, session: int, ends: float, by: Identity) -> tuple[Device, str]:
+        """Add a reading link of a session, until `ends` (s since 1970); return it and its token.
+
+        Raise RefusedError, StoreError.
+        """
+        device, token = await self.devices.add_link(session, ends)
+        self._notify("access", "info", f"“{by.name}” made a reading link for session {session}.")
+        return device, token
+
+    def read_link(self, token: str) -> tuple[Device, BrowserSecrets]:
+        """Return the reading link of a token, and the secrets of the browsers that it lets in.
+
+        Raise LinkEndedError.
+        """
+        opened = self.devices.find_link(token)
+        if opened is None:
+            raise LinkEndedError(NO_LINK)
+        device, secrets = opened
+        if (reason := self.devices.explain_end(device)) is not None:
+            raise LinkEndedError(reason)
+        self.devices.see(device)
+        return device, secrets
+
+    async def end_link(self, number: int, by: Identity) -> None:
+        """End a reading link, also where it is being read. Raise UnknownLinkError, StoreError."""
+        link = self.devices.get_link(number)
+        await self._remove(link, REVOKED)
+        self._notify("access", "info", f"“{by.name}” ended a reading link for session {link.session}.")
 
     async def set_role(self, number: int, role: Role, by: Identity) -> None:
         """Change a device's role; its live sockets are closed, and open again in the new role.

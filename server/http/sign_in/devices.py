@@ -1,4 +1,4 @@
-"""Paired browsers and programs with their roles: looked up in memory, stored in the database."""
+"""Browsers, programs and reading links, with their roles: looked up in memory, stored in the database."""
 
 import asyncio
 import logging
@@ -15,7 +15,7 @@ from sqlmodel import col, select
 from robot_runtime.errors import RefusedError
 from server.http.sign_in.identity import SHELL, Identity, Kind, Role, Scope
 from server.http.sign_in.names import find_same, number_name
-from server.http.sign_in.tokens import TOKEN_PREFIX, digest, make_token
+from server.http.sign_in.tokens import TOKEN_PREFIX, derive_secret, digest, make_token
 from server.platform.errors import NotFoundError, SignedOutError
 from server.platform.models import DeviceRow
 from server.platform.store import Store, StoreError, insert_row
@@ -31,6 +31,8 @@ CLOCK_NOT_SET = (
 DEVICES_MAX = 200
 REMOVED = "removed"
 """Kind of a row that is no device any more."""
+LINKS_MAX = 50
+"""Reading links of one session, ended ones included."""
 FORMER_MAX = 1000
 """Removed devices whose names are remembered, the newest."""
 SEEN_SECONDS = 3600.0
@@ -45,6 +47,13 @@ class UnknownDeviceError(NotFoundError):
 
     def __init__(self, device: int) -> None:
         super().__init__(f"There is no device {device}; GET /api/access/devices lists those there are.")
+
+
+class UnknownLinkError(NotFoundError):
+    """There is no such reading link"""
+
+    def __init__(self, link: int) -> None:
+        super().__init__(f"There is no reading link {link}: somebody may have ended it already.")
 
 
 class SignInEndedError(SignedOutError):
@@ -64,7 +73,7 @@ class BrowserSecrets:
 
 @dataclass(slots=True)
 class Device:
-    """A paired browser or program, as in DeviceRow.
+    """A paired browser or program, or a reading link, as in DeviceRow.
 
     `page_secret` is a digest. `stored` is the last visit in the database, `used` the last one since this
     server began (s, steady clock). `stored_role` is the role in the database.
@@ -81,6 +90,7 @@ class Device:
     ends: float | None
     page_secret: str | None
     stored_role: Role
+    session: int | None = None
     used: float = -inf
 
     def has_page_secret(self, secret: str) -> bool:
@@ -90,7 +100,7 @@ class Device:
     @property
     def identity(self) -> Identity:
         """The identity of this device as a caller."""
-        return Identity(self.id, self.name, self.role, self.kind, self.limited)
+        return Identity(self.id, self.name, self.role, self.kind, self.limited, self.session)
 
 
 class Devices:
@@ -124,23 +134,41 @@ class Devices:
                     self._keep(row.id, row)
 
     def all(self) -> list[Device]:
-        """Return all devices, by number."""
-        return [self._devices[number] for number in sorted(self._devices)]
+        """Return all browsers and programs, by number."""
+        return [device for _, device in sorted(self._devices.items()) if device.kind != "reader"]
+
+    def links(self, session: int) -> list[Device]:
+        """Return the reading links of a session, by number."""
+        return [device for _, device in sorted(self._devices.items()) if device.session == session]
 
     def get(self, number: int) -> Device:
-        """Return the device of this number. Raise UnknownDeviceError."""
-        if number not in self._devices:
+        """Return the browser or program of this number. Raise UnknownDeviceError."""
+        device = self._devices.get(number)
+        if device is None or device.kind == "reader":
             raise UnknownDeviceError(number)
-        return self._devices[number]
+        return device
 
-    def find(self, secret: str, kind: Kind) -> Device | None:
-        """Return the device of this kind that has this secret, even if it has expired."""
-        return self.find_digest(digest(secret), kind)
+    def get_link(self, number: int) -> Device:
+        """Return the reading link of this number. Raise UnknownLinkError."""
+        device = self._devices.get(number)
+        if device is None or device.kind != "reader":
+            raise UnknownLinkError(number)
+        return device
 
-    def find_digest(self, secret: str, kind: Kind) -> Device | None:
-        """Return the device of this kind by the digest of its secret."""
+    def find(self, secret: str, *kinds: Kind) -> Device | None:
+        """Return the device of one of these kinds that has this secret, even if it has expired."""
+        return self.find_digest(digest(secret), *kinds)
+
+    def find_digest(self, secret: str, *kinds: Kind) -> Device | None:
+        """Return the device of one of these kinds by the digest of its secret."""
         device = self._devices.get(self._by_secret.get(secret, 0))
-        return device if device is not None and device.kind == kind else None
+        return device if device is not None and device.kind in kinds else None
+
+    def find_link(self, token: str) -> tuple[Device, BrowserSecrets] | None:
+        """Return the reading link of a token, even if it has expired, and the secrets of its browsers."""
+        secrets = _secrets_of_link(token)
+        device = self.find(secrets.cookie, "reader")
+        return None if device is None else (device, secrets)
 
     def find_valid(self, number: int) -> Device | None:
         """Return the device of this number; None if expired or revoked, even before that is stored."""
@@ -151,6 +179,9 @@ class Devices:
         """Return the reason why a device's time is over; None while it is not."""
         if device.ends is not None and not is_set(self._utc()):
             return CLOCK_NOT_SET
+        if device.ends is not None and self._utc() >= device.ends and device.kind == "reader":
+            moment = datetime.fromtimestamp(device.ends, UTC)
+            return f"This reading link ended on {moment:%Y-%m-%d at %H:%M} UTC. Ask for a new one."
         if device.ends is not None and self._utc() >= device.ends:
             day = datetime.fromtimestamp(device.ends, UTC).date()
             return f"This token ended on {day}. Make a new one under People, or with `mucat access token`."
@@ -161,9 +192,13 @@ class Devices:
             return f"This browser was not used for {IDLE_DAYS} days, and is signed out. Sign it in again."
         return None
 
+    def end_of(self, number: int) -> float | None:
+        """Return the end of a device's token or link, s since 1970; None where it never ends."""
+        return self._devices[number].ends if number in self._devices else None
+
     def count_seconds(self, number: int) -> float | None:
-        """Return the seconds until the device's token ends; None where it never does."""
-        ends = self.get(number).ends if number in self._devices else None
+        """Return the seconds until the device's token or link ends; None where it never does."""
+        ends = self.end_of(number)
         return None if ends is None else max(0.0, ends - self._utc())
 
     @property
@@ -203,6 +238,31 @@ class Devices:
             self._refuse_same(name, self._list_names())
             return await self._add(name, role, "program", limited=scope != "administer", ends=ends)
 
+    async def add_link(self, session: int, ends: float) -> tuple[Device, str]:
+        """Add a reading link of a session; return it and its token, which is not stored.
+
+        It ends at `ends` (s since 1970). Raise RefusedError where there are too many, that moment is over, or
+        the clock has not been set, StoreError.
+        """
+        if not is_set(self._utc()):
+            raise RefusedError(CLOCK_NOT_SET)
+        if ends <= self._utc():
+            raise RefusedError("This reading link would have ended already. Choose a later end.")
+        if len(self.links(session)) >= LINKS_MAX:
+            raise RefusedError(f"This session has {LINKS_MAX} reading links already. End those nobody needs.")
+        token = make_token()
+        secrets = _secrets_of_link(token)
+        device, _ = await self._add(
+            f"reading link for session {session}",
+            "viewer",
+            "reader",
+            ends=ends,
+            secret=secrets.cookie,
+            page_secret=digest(secrets.page),
+            session=session,
+        )
+        return device, token
+
     async def _add(
         self,
         name: str,
@@ -211,11 +271,14 @@ class Devices:
         *,
         limited: bool = False,
         ends: float | None = None,
+        secret: str = "",
         page_secret: str | None = None,
+        session: int | None = None,
     ) -> tuple[Device, str]:
-        if len(self._devices) >= DEVICES_MAX:
+        # Links are limited by session: however many there are, a browser can be signed in.
+        if kind != "reader" and len(self.all()) >= DEVICES_MAX:
             raise RefusedError(f"{DEVICES_MAX} devices are paired already. Revoke those that nobody uses.")
-        secret = make_token(TOKEN_PREFIX if kind == "program" else "")
+        secret = secret or make_token(TOKEN_PREFIX if kind == "program" else "")
         now = self._utc()
         row = DeviceRow(
             name=name,
@@ -227,6 +290,7 @@ class Devices:
             limited=limited,
             ends=ends,
             page_secret=page_secret,
+            session_id=session,
         )
         values = row.model_dump(exclude={"id"})
         number = await self._store.write(lambda connection: insert_row(connection, DeviceRow, values))
@@ -255,8 +319,8 @@ class Devices:
             device.name = name
 
     def _list_names(self, but: int | None = None) -> list[str]:
-        """Return the names of the shell and of all devices but this one."""
-        return [SHELL.name, *(device.name for device in self._devices.values() if device.id != but)]
+        """Return the names of the shell and of all browsers and programs but this one."""
+        return [SHELL.name, *(device.name for device in self.all() if device.id != but)]
 
     @staticmethod
     def _refuse_same(name: str, others: list[str]) -> None:
@@ -267,8 +331,10 @@ class Devices:
             )
 
     async def remove(self, number: int) -> None:
-        """Remove a device; its secret is invalid at once. Raise UnknownDeviceError, StoreError."""
-        name = self.get(number).name
+        """Remove a device or link; its secret is invalid at once. Raise UnknownDeviceError, StoreError."""
+        if number not in self._devices:
+            raise UnknownDeviceError(number)
+        name = self._devices[number].name
         self._by_secret = {secret: owner for secret, owner in self._by_secret.items() if owner != number}
 
         def forget(connection: Connection) -> None:
@@ -316,7 +382,7 @@ class Devices:
             id=number,
             name=row.name,
             role=role,
-            kind="program" if row.kind == "program" else "browser",
+            kind=_kind_of(row),
             paired=row.paired,
             seen=row.seen,
             stored=row.seen,
@@ -324,7 +390,18 @@ class Devices:
             ends=row.ends,
             page_secret=row.page_secret,
             stored_role=role,
+            session=row.session_id,
         )
         self._devices[number] = device
         self._by_secret[row.secret] = number
         return device
+
+
+def _secrets_of_link(token: str) -> BrowserSecrets:
+    return BrowserSecrets(derive_secret("cookie", token), derive_secret("page", token))
+
+
+def _kind_of(row: DeviceRow) -> Kind:
+    if row.session_id is not None:
+        return "reader"
+    return "program" if row.kind == "program" else "browser"

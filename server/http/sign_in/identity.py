@@ -1,4 +1,4 @@
-"""The identity of a signed-in caller: a browser, a program, or the shell of this computer."""
+"""The identity of a caller: a browser, a program, a reading link, or the shell of this computer."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -9,7 +9,7 @@ from starlette.requests import HTTPConnection
 from server.platform.audit_file import SHELL_NAME
 
 Role = Literal["viewer", "operator"]
-Kind = Literal["browser", "program", "shell"]
+Kind = Literal["browser", "program", "reader", "shell"]
 Scope = Literal["read", "operate", "administer"]
 """Rights of a token: those of a viewer; of an operator who does not administer; of an operator."""
 
@@ -21,9 +21,10 @@ SIGN_IN_ENDED = "sign_in_ended"
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """A caller. `device` is the number of the browser or program that was paired; 0 is the shell.
+    """A caller. `device` is the number of the browser, program or reading link; 0 is the shell.
 
-    `limited` is a program that may not administer, also not as an operator.
+    `limited` is a program that may not administer, also not as an operator. `session` is the one session that
+    a reader may read; None for all others.
     """
 
     device: int
@@ -31,6 +32,7 @@ class Identity:
     role: Role
     kind: Kind
     limited: bool = False
+    session: int | None = None
 
 
 async def identify_caller(connection: HTTPConnection) -> Identity:

@@ -10,9 +10,16 @@ from server.http.security import DOORS, SAFE_METHODS, refuse
 from server.http.sign_in.access import PAGE_HEADER, Access
 from server.http.sign_in.devices import SignInEndedError
 from server.http.sign_in.identity import IDENTITY, SIGN_IN_ENDED, Identity
-from server.http.sign_in.policy import is_linked
+from server.http.sign_in.policy import is_linked, is_within_reach
 
-OPEN = frozenset({("GET", "/api/alive"), ("GET", "/api/access/me"), ("POST", "/api/access/pair")})
+OPEN = frozenset(
+    {
+        ("GET", "/api/alive"),
+        ("GET", "/api/access/me"),
+        ("POST", "/api/access/pair"),
+        ("POST", "/api/access/read"),
+    }
+)
 """The operations that need no sign-in."""
 NOBODY = (
     "You are not signed in. Open the link that the server printed when it started, or that `mucat pair` "
@@ -20,10 +27,17 @@ NOBODY = (
 )
 
 
+BEYOND = (
+    "A reading link shows one session, and changes nothing. Sign this browser in for more: ask an operator "
+    "for a link to sign in with."
+)
+
+
 class SignInMiddleware:
     """ASGI middleware: puts the caller's Identity into the scope.
 
-    Refuses with 401 without one, and with 403 a browser that does not name this server's page as its origin.
+    Refuses with 401 without one, and with 403 a browser that does not name this server's page as its origin,
+    and a reader who asks for anything but the session of the reading link.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -50,6 +64,9 @@ class SignInMiddleware:
             await refuse(scope, receive, send, 401, nobody)
         elif identity is not None and (reason := _foreign(connection, identity)) is not None:
             await refuse(scope, receive, send, 403, reason)
+        elif identity is not None and _is_beyond_reach(scope, identity):
+            scope[IDENTITY] = identity
+            await refuse(scope, receive, send, 403, BEYOND)
         elif identity is not None and scope["type"] == "http":
             scope[IDENTITY] = identity
             with suppress(_RevokedError):
@@ -59,6 +76,14 @@ class SignInMiddleware:
         else:
             scope[IDENTITY] = identity
             await self._app(scope, receive, send)
+
+
+def _is_beyond_reach(scope: Scope, identity: Identity) -> bool:
+    """Return True where a reader asks for anything but the session of the reading link."""
+    method, path = scope.get("method"), scope["path"]
+    if identity.session is None or not _is_api(path) or (method, path) in OPEN:
+        return False
+    return not is_within_reach(scope["app"].routes, method, path, identity.session)
 
 
 class _RevokedError(Exception):
@@ -83,7 +108,7 @@ def _is_api(path: str) -> bool:
 def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
     """Return the reason why a foreign page may have caused this request of a browser."""
     socket = connection.scope["type"] == "websocket"
-    if identity.kind != "browser" or (not socket and connection.scope["method"] in SAFE_METHODS):
+    if identity.kind in ("program", "shell") or (not socket and connection.scope["method"] in SAFE_METHODS):
         return None
     if "origin" not in connection.headers:
         return "A browser must name the page that asks (Origin). Open this server's own page."

@@ -12,6 +12,8 @@ from server.http.sign_in.identity import Identity
 DECLARED = "x-need"
 """The entry of an operation in the interface's document that says its need."""
 
+SESSION = "/api/sessions/{session}"
+"""The address of a session."""
 LINKED = "x-linked"
 """The entry of an operation that the page links to."""
 
@@ -32,6 +34,24 @@ def is_linked(routes: Iterable[BaseRoute], path: str) -> bool:
     )
 
 
+def is_within_reach(routes: Iterable[BaseRoute], method: str | None, path: str, session: int) -> bool:
+    """Return True where a reader of this session may ask: it reads what stands below the session's address.
+
+    All else is refused, also what has no declared need, and every socket, which has no method.
+    """
+    return method == "GET" and any(
+        _is_for_readers(route)
+        and (parts := route.path_regex.match(path)) is not None
+        and parts["session"] == str(session)
+        for route in iter_route_contexts([*routes])
+    )
+
+
+def _is_for_readers(route: Any) -> bool:
+    below = route.path == SESSION or route.path.startswith(f"{SESSION}/")
+    return below and need_of(route) is Need.VIEWER and "GET" in (route.methods or ())
+
+
 def need_of(route: Any) -> Need | None:
     """Return the need that a route declares; None where it declares none."""
     declared = (getattr(route, "openapi_extra", None) or {}).get(DECLARED)
@@ -44,6 +64,17 @@ def list_needs(routes: Iterable[BaseRoute]) -> dict[str, Need | None]:
         (getattr(route, "operation_id", None), need_of(route)) for route in iter_route_contexts([*routes])
     )
     return {operation: need for operation, need in pairs if operation is not None}
+
+
+def list_refused(routes: Iterable[BaseRoute], identity: Identity) -> list[str]:
+    """Return the operations that the caller's role may not call, by `operation_id`; a reader's are all that
+    do not read the session."""
+    needs = list_needs(routes)
+    if identity.session is None:
+        return [name for name, need in needs.items() if need is not None and need >= Need.OPERATOR]
+    contexts = iter_route_contexts([*routes])
+    readable = {route.operation_id for route in contexts if _is_for_readers(route)}
+    return [name for name in needs if name not in readable]
 
 
 MESSAGES: dict[str, Need] = {

@@ -16,6 +16,11 @@ def make_token(prefix: str = "") -> str:
     return prefix + secrets.token_urlsafe(TOKEN_BYTES)
 
 
+def derive_secret(purpose: str, token: str) -> str:
+    """Return a secret for this purpose that whoever has the token can compute, and nobody from it another."""
+    return sha256(f"{purpose} {token}".encode()).hexdigest()
+
+
 def make_code() -> str:
     """Return a code that can also be read aloud, such as 7K3PX-Q2M9D."""
     letters = "".join(secrets.choice(CODE_ALPHABET) for _ in range(CODE_LENGTH))

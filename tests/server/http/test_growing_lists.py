@@ -31,7 +31,7 @@ from server.features.people.audit import LISTED_MOST as ENTRIES_LISTED
 from server.features.scenarios.library import SCENARIOS_MAX
 from server.features.scenarios.runs import QUEUE_MAX
 from server.features.tuning.runs import LISTED_MOST as RUNS_LISTED
-from server.http.sign_in.devices import DEVICES_MAX
+from server.http.sign_in.devices import DEVICES_MAX, LINKS_MAX
 from server.library.crafts import CRAFTS_MAX
 from server.library.film import SPANS_SHOWN
 from server.library.listing import COLUMNS_SHOWN, PAGE_MAX, TAGS_SHOWN
@@ -42,6 +42,7 @@ from server.platform.settings import Settings
 
 LIMITS = {
     "/api/access/devices": DEVICES_MAX,
+    "/api/access/reading-links": LINKS_MAX,
     "/api/audit entries": ENTRIES_LISTED,
     "/api/comm-tests/runs": TESTS_LISTED,
     "/api/comm-tests/runs/{run} results": CELLS_MAX,

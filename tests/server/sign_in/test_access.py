@@ -42,6 +42,7 @@ async def test_every_operation_needs_a_sign_in(served: Served) -> None:
             "ended": "",
             "pairing_open": False,
             "operators_only": [],
+            "ends": None,
         }
 
 
@@ -75,8 +76,8 @@ async def test_a_code_signs_a_browser_in_with_an_http_only_cookie(served: Served
     async with browser(served, None, "bench laptop") as visitor:
         assert (await visitor.api.get("/access/me")).json()["pairing_open"]
         answer = await visitor.pair(code)
-        identity = {"device": 1, "name": "bench laptop", "role": "operator", "kind": "browser"}
-        identity["limited"] = False
+        identity: dict[str, object] = {"device": 1, "name": "bench laptop", "role": "operator"}
+        identity |= {"kind": "browser", "limited": False, "session": None}
         assert (answer.status_code, answer.json()["identity"]) == (200, identity)
         name, _, rest = answer.headers["set-cookie"].partition("=")
         assert name == f"mucat_{served.settings.server.port}"

@@ -94,7 +94,14 @@ async def test_a_revoked_browser_may_pair_again_in_a_request_that_began_before(s
         half = await HalfSent.begin(leaving, served, "POST /api/access/pair", body)
         (await served.api.delete("/access/devices/1")).raise_for_status()
         status, text = await half.end()
-        identity = {"device": 2, "name": "back", "role": "viewer", "kind": "browser", "limited": False}
+        identity = {
+            "device": 2,
+            "name": "back",
+            "role": "viewer",
+            "kind": "browser",
+            "limited": False,
+            "session": None,
+        }
         assert (status, json.loads(text)["identity"]) == (200, identity)
 
 
