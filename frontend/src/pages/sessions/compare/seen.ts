@@ -1,0 +1,40 @@
+/** What the address says of a comparison: `from` and `to` (s on the common axis), `signals` and `align`. */
+import type { Align } from '../../../api';
+import type { View } from './figure';
+
+/** of a chart; more in an address are passed over */
+export const MOST_SIGNALS = 24;
+const LONGEST = 100;
+const MOST_STEPS = 999;
+
+/** The signals that an address names, each once. */
+export function readSignals(text: string): string[] {
+  const names = text.split(',').filter((name) => name !== '' && name.length <= LONGEST);
+  return [...new Set(names)].slice(0, MOST_SIGNALS);
+}
+
+/** What begins together, as `start`, `armed`, `set_point:2`, `marker:text` or `mission:step`; the start where it is none of these. */
+export function readAlign(text: string): Align {
+  const start = { by: 'start', number: 1, marker: '', step: '' } as const;
+  const [by = '', which = ''] = text.split(/:(.*)/s);
+  if (by === 'armed') return { ...start, by };
+  if (by === 'marker' && which.length <= LONGEST) return { ...start, by, marker: which };
+  if (by === 'mission' && which.length <= LONGEST) return { ...start, by, step: which };
+  const number = Number(which);
+  return by === 'set_point' && Number.isInteger(number) && number >= 1 && number <= MOST_STEPS ? { ...start, by, number } : start;
+}
+
+/** The same for the address; null for the start, which needs no word. */
+export function writeAlign({ by, number, marker, step }: Align): string | null {
+  if (by === 'start') return null;
+  if (by === 'set_point') return `${by}:${number}`;
+  return by === 'armed' ? by : `${by}:${by === 'marker' ? marker : step}`;
+}
+
+/** A part of the time; null where the address names none, or its end does not come after its start. */
+export function readView(from: number | null, to: number | null): View | null {
+  return from === null || to === null || to <= from ? null : { start: from, end: to };
+}
+
+/** To the millisecond, as it stands in an address. */
+export const rounded = ({ start, end }: View): View => ({ start: Number(start.toFixed(3)), end: Number(end.toFixed(3)) });
