@@ -35,8 +35,8 @@ describe('words and addresses', () => {
 
   it('links to a moment', () => {
     expect(replayLink(7)).toBe('#/replay/7');
-    expect(replayLink(7, 12.34)).toBe('#/replay/7/12.3');
-    expect(replayLink(7, -0.2)).toBe('#/replay/7/0.0');
+    expect(replayLink(7, 12.34)).toBe('#/replay/7?at=12.3');
+    expect(replayLink(7, -0.2)).toBe('#/replay/7?at=0.0');
     expect(compareLink([7, 9])).toBe('#/sessions/compare/7,9');
   });
 });

@@ -35,4 +35,4 @@ def test_a_drag_of_the_slider_writes_the_address_at_its_end(page: Page, site: Si
     slider = page.get_by_label("Time since the start of the session")
     expect(slider).to_be_visible()
     assert slider.evaluate(DRAG) <= 1
-    expect(page).to_have_url(re.compile(rf"#/replay/{session}/1\.0$"))
+    expect(page).to_have_url(re.compile(rf"#/replay/{session}\?at=1$"))

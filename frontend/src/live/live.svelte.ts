@@ -3,6 +3,7 @@ import type { FilmDescription } from '../api';
 import { DOCUMENT_TOPICS, PICTURE_TOPICS, type Alarm, type DebugLine, type Detection, type Documents, type RobotEvent, type Rows, type State } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
+import { keepDetections } from './found';
 import { groupAlarms, membersOf, type AlarmGroup } from './alarms';
 import type { Control } from './control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
@@ -67,6 +68,8 @@ export class Live {
   parts = $state.raw<readonly PartHealth[]>([]);
   recording = $state.raw<Session | null>(null);
   /** the newest document of each topic */
+  /** those that may be of the picture that is shown, in order of time; of the robot itself the newest alone */
+  detections = $state.raw<readonly Documents['detection'][]>([]);
   readonly documents = createNewest<Documents>(namesOf(DOCUMENT_TOPICS));
   /** the newest picture of each topic: of the camera, and of what somebody asked for with `watch` */
   readonly pictures = createNewest<Record<PictureTopic, Picture>>(namesOf(PICTURE_TOPICS));
@@ -264,6 +267,7 @@ export class Live {
     for (const ring of Object.values(this.rings)) ring.clear();
     for (const list of Object.values(this.#lists)) list.clear();
     for (const newest of [...Object.values(this.documents), ...Object.values(this.pictures)]) newest.value = null;
+    this.detections = [];
   }
 
   /** Take in what of a block is later than `after`. Returns the time up to which its topic is known (s), if any. */
@@ -296,7 +300,12 @@ export class Live {
 
   #keep<Name extends keyof Documents>(name: Name, documents: Documents[Name][]): void {
     this.documents[name].value = documents.at(-1) ?? null;
+    if (name === 'detection') this.#keepDetections(documents as Documents['detection'][]);
     this.#lists[name]?.append(documents);
+  }
+
+  #keepDetections(newer: Documents['detection'][]): void {
+    this.detections = this.replayed ? keepDetections(this.detections, newer) : newer.slice(-1);
   }
 
   /** Show at once what has become another, digits too. */

@@ -96,8 +96,10 @@ LIMITS = {
         for column in ("time", "x", "y", "depth")
     },
     "/api/sessions/{session}/spectrum": SPECTRA_MAX,
-    **{f"/api/sessions/{{session}}/spectrum {one}": FREQUENCIES_MAX for one in ("frequency", "density")},
-    **{f"/api/sessions/{{session}}/pair {one}": PAIRS_MAX for one in ("time", "x_values", "y_values")},
+    **{
+        f"/api/sessions/{{session}}/spectrum {column}": FREQUENCIES_MAX for column in ("frequency", "density")
+    },
+    **{f"/api/sessions/{{session}}/pair {column}": PAIRS_MAX for column in ("time", "x_values", "y_values")},
     "/api/sessions/{session}/timeline events": SHOWN_MAX,
     "/api/sessions/{session}/timeline holes": SHOWN_MAX,
     "/api/sessions/{session}/timeline markers": SHOWN_MAX,
