@@ -1,4 +1,4 @@
-"""The film of the whole simulated robot: what it costs, its pictures a second, and its bytes.
+"""The film of the whole simulated robot: what it costs, its pictures a second, its bytes, and its exports.
 
 The jitter of the control loop and the processor time of each process are measured of a robot that records
 without a film and of one that records with it, one after the other.
@@ -10,6 +10,9 @@ from pathlib import Path
 
 from bench import jitter
 from bench.processes import core_percent
+from server.features.exports.formats import check
+from server.features.exports.schemas import ExportOptions, Overlay
+from server.features.exports.selection import ExportSelection
 from server.features.film.config import FilmConfig
 from server.library.content import Recording
 from server.platform.settings import DataFolder
@@ -49,11 +52,30 @@ def _record(name: str, config: FilmConfig) -> dict[str, float]:
         return figures | (_sizes(data, session, began, end) if config.record else {})
 
 
+def _export_speeds(store: Reader, session: int) -> dict[str, float]:
+    """Return the film's length over the time of its export, as it is and with the flight view's lines."""
+    taken = [moment for moment, _ in Recording(store, find_row(store, session)).film()]
+    speeds = dict[str, float]()
+    kinds: tuple[tuple[Overlay, str], ...] = (
+        ("none", "film.export_speed"),
+        ("lines", "film.export_speed_lines"),
+    )
+    for overlay, name in kinds:
+        options = ExportOptions(format="mp4", overlay=overlay)
+        source = ExportSelection(store, find_row(store, session), options)
+        with tempfile.TemporaryFile() as file:
+            began = time.monotonic()
+            check(options).write_unpurged(store, source, file)
+            speeds[name] = (taken[-1] - taken[0]) / (time.monotonic() - began)
+    return speeds
+
+
 def _sizes(data: Path, session: int, start: float, end: float) -> dict[str, float]:
     store = Reader(DataFolder(data).database)
     sizes = [len(picture) for _, picture in Recording(store, find_row(store, session)).film(start, end)]
+    speeds = _export_speeds(store, session)
     store.close()
-    return {
+    return speeds | {
         "film.picture_hz": len(sizes) / _SECONDS,
         "film.mb_a_minute": sum(sizes) / 1e6 / _SECONDS * 60,
     }

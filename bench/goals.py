@@ -127,6 +127,8 @@ GOALS = {
     "fly.picture_age_ms_p95": _most(150, "memory"),
     "fly.picture_hz": _least(14.5),
     "film.picture_hz": _least(14.5),
+    "film.export_speed": _least(5),
+    "film.export_speed_lines": _least(2),
     "latency.key_to_fin_ms_p95": _most(150),
     "latency.sample_to_page_ms_p95": _most(80),
     "hub.latency_ms_p50.50": _most(15, "python"),

@@ -20,8 +20,10 @@ from typing import NamedTuple
 
 import httpx
 
-from robot_runtime.contract.chunks import decode_documents, decode_rows
+from robot_runtime.contract.chunks import decode_documents, decode_pictures, decode_rows
+from robot_runtime.contract.film_picture import FilmPicture
 from robot_runtime.contract.topics import BY_NAME, TIME, Kind
+from server.library.film import decode_film
 from tests.stack import Stack
 
 RECORDED_MAX = 2.0
@@ -29,6 +31,8 @@ RECORDED_MAX = 2.0
 STARTING_MAX = 0.5
 """s after which a server that starts is killed, now and then."""
 PATIENCE = 60.0
+PICTURE_SECONDS = 1 / 15
+"""s between two pictures of the film."""
 PARTS = ("board", "runtime", "simulator")
 
 
@@ -60,6 +64,14 @@ class KillReport:
     """Times that the robot was stopped because no server came back in time."""
     tick_longest: float = 0.0
     integrity: str = ""
+    pictures: int = 0
+    """Pictures of the film."""
+    shown: int = 0
+    """Pictures that a decoder gives, from the first to the last."""
+    picture_longest: float = 0.0
+    """s between two pictures."""
+    picture_apart: float = 0.0
+    """s between a picture and the nearest sample of the depth, at most."""
 
     @property
     def problems(self) -> list[str]:
@@ -71,6 +83,10 @@ class KillReport:
             results.append(f"{self.lost} samples that were stored are gone")
         if self.doubles:
             results.append(f"{self.doubles} samples are there twice or out of order")
+        if self.shown != self.pictures:
+            results.append(f"of {self.pictures} pictures of the film {self.shown} can be shown")
+        if self.picture_apart > PICTURE_SECONDS:
+            results.append(f"a picture is {self.picture_apart:.3f} s from the depth's samples")
         if self.integrity != "ok":
             results.append(f"the database is damaged: {self.integrity}")
         return results
@@ -86,6 +102,8 @@ class KillReport:
             f"server away: median {away[len(away) // 2]:.1f} s, longest {away[-1]:.1f} s; "
             f"robot stopped for it {self.stops} times",
             f"longest pause between two control ticks: {self.tick_longest:.3f} s",
+            f"film: {self.pictures} pictures, of which {self.shown} can be shown; longest pause "
+            f"{self.picture_longest:.3f} s; at most {self.picture_apart:.3f} s from a sample of the depth",
         ]
         return "\n".join([*lines, *self.problems])
 
@@ -93,6 +111,8 @@ class KillReport:
 def measure(kills: int, seed: int, tell: Callable[[str], None] = lambda _: None) -> KillReport:
     """Record, kill and restart a robot of its own repeatedly; then check the stored samples."""
     with TemporaryDirectory(prefix="mucat-") as name, Stack(Path(name) / "data") as stack:
+        film = {"record": True, "rate": 1 / PICTURE_SECONDS, "quality": "medium"}
+        stack.api.put("/film", json=film).raise_for_status()
         return measure_on(stack, kills, seed, tell)
 
 
@@ -173,6 +193,8 @@ def _examine(database: Path, session: int, report: KillReport) -> None:
         )
         ends: dict[str, tuple[int, float]] = {}
         ticks: list[float] = []
+        depths: list[float] = []
+        pictures: list[tuple[float, bytes]] = []
         reports: dict[str, int] = defaultdict(int)
         for topic, first, count, first_time, last_time, data in chunks:
             number, time_before = ends.get(topic, (first, first_time))
@@ -183,11 +205,28 @@ def _examine(database: Path, session: int, report: KillReport) -> None:
             report.rows += count
             if topic == "control":
                 ticks += row_times(topic, data)
+            elif topic == "depth":
+                depths += row_times(topic, data)
+            elif topic == "film":
+                pictures += decode_pictures(data)
             elif topic == "event":
                 for event in decode_documents(data):
                     reports[event["text"].partition(";")[0]] += 1
     report.stops = reports["The server sends no heartbeat"]
     report.tick_longest = max((after - before for before, after in pairwise(ticks)))
+    _examine_film(pictures, depths, report)
+
+
+def _examine_film(pictures: list[tuple[float, bytes]], depths: list[float], report: KillReport) -> None:
+    report.pictures = len(pictures)
+    if not pictures:
+        return
+    film = [(time, FilmPicture(picture)) for time, picture in pictures]
+    report.shown = sum(1 for _ in decode_film(film))
+    report.picture_longest = max((after - before for (before, _), (after, _) in pairwise(film)), default=0.0)
+    # Before the first sample and after the last one there is none to compare with.
+    inside = [time for time, _ in film if depths[0] <= time <= depths[-1]]
+    report.picture_apart = max(min(abs(time - depth) for depth in depths) for time in inside)
 
 
 def row_times(topic: str, data: bytes) -> list[float]:

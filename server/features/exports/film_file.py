@@ -79,7 +79,7 @@ def describe(values: FlightValues) -> str:
     """Return the values of a moment as lines of text."""
     parts = [format_time(values.time)]
     if values.depth is not None:
-        parts.append(f"{values.depth:.2f} m")
+        parts.append(f"{values.depth:z.2f} m")
     if values.depth_held is not None:
         parts.append(f"set {values.depth_held:.2f} m")
     if values.attitude is not None:

@@ -149,7 +149,7 @@ class FlightLines:
         for at, tenth in marks:
             if tenth % 5 == 0 and abs(at) > 18 * unit:
                 self._write(f"{tenth / 10:.1f}", right - 14 * unit, middle + at, size=0.36, align=1.0)
-        self._box(f"{depth:.2f} m", right - 44 * unit, middle, 62 * unit)
+        self._box(f"{depth:z.2f} m", right - 44 * unit, middle, 62 * unit)
         if held is None:
             return
         apart = (held - depth) * per_metre

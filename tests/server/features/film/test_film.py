@@ -354,7 +354,7 @@ async def test_subtitles_say_the_values_of_their_moment(served: Served, tmp_path
     first = next(iter(recording.film()))[0]
     for moment, text in texts:
         depth = columns["depth"][int(np.searchsorted(times, first + moment + 1e-6, "right")) - 1]
-        assert f"{depth:.2f} m" in text
+        assert f"{depth:z.2f} m" in text
         assert "ARMED  automatic" in text
 
 
