@@ -32,7 +32,9 @@ def gather_flags(
 ) -> list[Flag]:
     """Return the flags in order of time; of too many the gravest."""
     marked = (
-        Flag(time=mark.time, kind="bookmark", severity="info", text=mark.text or "Bookmark")
+        Flag(
+            time=mark.time, kind="bookmark", severity="info", text=mark.text.partition("\n")[0] or "Bookmark"
+        )
         for mark in bookmarks
     )
     flags = [*chain(_of_events(events), marked, _of_missions(missions), _of_settings(history))]

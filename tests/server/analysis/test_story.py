@@ -152,7 +152,7 @@ def test_a_chosen_part_has_figures_of_its_own(store: Store, session: int) -> Non
 
 
 def test_flags_are_what_happened_in_order_of_time(store: Store, session: int) -> None:
-    values = {"session_id": session, "time": 105.0, "text": "bubbles", "made": 0.0}
+    values = {"session_id": session, "time": 105.0, "text": "bubbles\n\nmany of **them**", "made": 0.0}
     asyncio.run(store.write(lambda connection: connection.execute(insert(BookmarkRow).values(values))))
     flags = tell(store, session).flags
     assert [(flag.time + ORIGIN, flag.kind, flag.severity, flag.text) for flag in flags] == [
