@@ -38,7 +38,7 @@ def measure() -> dict[str, float]:
         (data / "robot.toml").write_text(CONFIG)
         opened, again, zoomed, drawn = [], [], [], []
         for _ in range(TIMES):
-            with _serve(data) as api:
+            with serve_recordings(data) as api:
                 request = {
                     "sessions": ids,
                     "signals": ["depth.depth", "control.set_point"],
@@ -48,7 +48,7 @@ def measure() -> dict[str, float]:
                 opened.append(_ask(api, "compare", request))
                 again.append(_ask(api, "compare", request | {"align": {"by": "armed"}}))
                 zoomed.append(_ask(api, "compare/lines", request | {"view": view}))
-            with _serve(data) as api:
+            with serve_recordings(data) as api:
                 drawn.append(_draw(api, data, ids))
         return {
             "compare.open_ms": statistics.median(opened),
@@ -82,7 +82,7 @@ def _draw(api: httpx.Client, data: Path, ids: list[int]) -> float:
 
 
 @contextmanager
-def _serve(data: Path) -> Iterator[httpx.Client]:
+def serve_recordings(data: Path) -> Iterator[httpx.Client]:
     port = free_port()
     command = [str(Path(sys.executable).parent / "mucat"), "run", "--port", str(port), "--data", str(data)]
     command += ["--config", str(data / "robot.toml")]

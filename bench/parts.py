@@ -51,6 +51,7 @@ PARTS = {
         BenchPart("start"),
         BenchPart("latency", draws=True),
         BenchPart("compare", draws=True),
+        BenchPart("story", draws=True),
         BenchPart("replay", draws=True),
         BenchPart("stack"),
         BenchPart("quota", is_long=True, prefix="quota."),
