@@ -112,18 +112,18 @@ def _is_there(name: str, known: dict[str, Signal], series: dict[str, Series]) ->
 
 def _describe_spectrum(signal: Signal, series: Series) -> Spectrum:
     try:
-        found = find_spectrum(series, angle=_is_angle(signal))
+        density = find_spectrum(series, angle=_is_angle(signal))
     except NoSpectrumError as problem:
         return Spectrum(
             signal=signal, frequency=[], density=[], rate=0, segments=0, peak=None, problem=str(problem)
         )
     return Spectrum(
         signal=signal,
-        frequency=_numbers(found.frequency),
-        density=_numbers(found.density),
-        rate=found.rate,
-        segments=found.segments,
-        peak=SpectrumPeak.model_validate(asdict(found.peak)) if found.peak is not None else None,
+        frequency=_numbers(density.frequency),
+        density=_numbers(density.density),
+        rate=density.rate,
+        segments=density.segments,
+        peak=SpectrumPeak.model_validate(asdict(density.peak)) if density.peak is not None else None,
         problem="",
     )
 

@@ -61,8 +61,8 @@ def story_figures(comparer: Comparer, query: str) -> bytes:
 
 def spectrum(comparer: Comparer, query: str) -> bytes:
     """Return the spectra of signals, as JSON."""
-    found = comparer.study.find_spectra(StudyQuery.model_validate_json(query))
-    return TypeAdapter(list[Spectrum]).dump_json(found)
+    spectra = comparer.study.find_spectra(StudyQuery.model_validate_json(query))
+    return TypeAdapter(list[Spectrum]).dump_json(spectra)
 
 
 def pair(comparer: Comparer, query: str) -> bytes:

@@ -22,52 +22,54 @@ def noise(samples: int) -> Floats:
 @pytest.mark.parametrize("samples", [300, 2000, 20_000])
 def test_the_density_is_that_of_scipy(samples: int) -> None:
     series = Series(np.arange(samples) / RATE, noise(samples))
-    found = find_spectrum(series)
-    size = 2 * (found.frequency.size - 1)
+    spectrum = find_spectrum(series)
+    size = 2 * (spectrum.frequency.size - 1)
     frequency, density = welch(series.values, RATE, "hann", size)
-    np.testing.assert_allclose(found.frequency, frequency, rtol=1e-9)
-    np.testing.assert_allclose(found.density, density, rtol=1e-6)
+    np.testing.assert_allclose(spectrum.frequency, frequency, rtol=1e-9)
+    np.testing.assert_allclose(spectrum.density, density, rtol=1e-6)
 
 
 def test_the_integral_of_the_density_is_the_variance() -> None:
     series = Series(np.arange(20_000) / RATE, noise(20_000))
-    found = find_spectrum(series)
-    assert np.trapezoid(found.density, found.frequency) == pytest.approx(np.var(series.values), rel=0.02)
+    spectrum = find_spectrum(series)
+    assert np.trapezoid(spectrum.density, spectrum.frequency) == pytest.approx(
+        np.var(series.values), rel=0.02
+    )
 
 
 @pytest.mark.parametrize("frequency", [0.31, 0.4, 1.234, 7.7])
 def test_the_peak_is_the_sine_in_the_signal(frequency: float) -> None:
     series = sine(frequency, 0.03, 120)
-    found = find_spectrum(Series(series.times, series.values + noise(series.times.size) / 100))
-    assert found.peak is not None
-    assert found.peak.frequency == pytest.approx(frequency, abs=0.01)
-    assert found.peak.amplitude == pytest.approx(0.03, rel=0.02)
-    assert found.peak.share > 0.95
+    spectrum = find_spectrum(Series(series.times, series.values + noise(series.times.size) / 100))
+    assert spectrum.peak is not None
+    assert spectrum.peak.frequency == pytest.approx(frequency, abs=0.01)
+    assert spectrum.peak.amplitude == pytest.approx(0.03, rel=0.02)
+    assert spectrum.peak.share > 0.95
 
 
 def test_samples_at_uneven_times_have_the_same_peak() -> None:
     uneven = np.sort(np.random.default_rng(1).uniform(0, 120, 2400))
-    found = find_spectrum(Series(uneven, 0.1 * np.sin(2 * np.pi * 0.5 * uneven)))
-    assert found.peak is not None
-    assert found.peak.frequency == pytest.approx(0.5, abs=0.02)
+    spectrum = find_spectrum(Series(uneven, 0.1 * np.sin(2 * np.pi * 0.5 * uneven)))
+    assert spectrum.peak is not None
+    assert spectrum.peak.frequency == pytest.approx(0.5, abs=0.02)
 
 
 def test_a_pause_is_not_filled() -> None:
     series = sine(0.5, 0.1, 120)
     there = (series.times < 40) | (series.times > 80)
-    found = find_spectrum(Series(series.times[there], series.values[there]))
-    assert found.segments == sum(1 + (800 - 256) // 128 for _ in range(2))
-    assert found.peak is not None
-    assert found.peak.amplitude == pytest.approx(0.1, rel=0.02)
+    spectrum = find_spectrum(Series(series.times[there], series.values[there]))
+    assert spectrum.segments == sum(1 + (800 - 256) // 128 for _ in range(2))
+    assert spectrum.peak is not None
+    assert spectrum.peak.amplitude == pytest.approx(0.1, rel=0.02)
 
 
 def test_an_angle_goes_on_beyond_a_turn() -> None:
     times = np.arange(0, 120, 1 / RATE)
     angle = np.pi + 0.2 * np.sin(2 * np.pi * 0.5 * times)
     wrapped = Series(times, (angle + np.pi) % (2 * np.pi) - np.pi)
-    found = find_spectrum(wrapped, angle=True)
-    assert found.peak is not None
-    assert found.peak.amplitude == pytest.approx(0.2, rel=0.02)
+    spectrum = find_spectrum(wrapped, angle=True)
+    assert spectrum.peak is not None
+    assert spectrum.peak.amplitude == pytest.approx(0.2, rel=0.02)
 
 
 def test_a_constant_has_no_peak() -> None:
@@ -83,9 +85,9 @@ def test_too_few_samples_are_refused_with_their_number(samples: int) -> None:
 def test_values_that_are_no_numbers_are_left_out() -> None:
     series = sine(0.5, 0.1, 60)
     series.values[::7] = np.nan
-    found = find_spectrum(series)
-    assert found.peak is not None
-    assert found.peak.frequency == pytest.approx(0.5, abs=0.02)
+    spectrum = find_spectrum(series)
+    assert spectrum.peak is not None
+    assert spectrum.peak.frequency == pytest.approx(0.5, abs=0.02)
 
 
 def test_a_signal_is_paired_with_another_between_its_samples() -> None:
