@@ -23,11 +23,11 @@ const LAYERS = [
   ['panels'],
   ['layout'],
   ['shell', 'pages/*'],
-  ['flight'],
+  ['flight', 'finder'],
   ['app'],
 ];
 /** Files beside the rooms' folders. */
-const FLOOR = ['address', 'api', 'attitude', 'files', 'flight', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
+const FLOOR = ['address', 'api', 'attitude', 'files', 'finder', 'flight', 'format', 'http', 'number', 'pageSecret', 'polling', 'resource', 'router', 'screen', 'searching', 'shortcuts', 'storage', 'theme'];
 const APP = ['App', 'ReaderPage', 'Root', 'lazyPages', 'main'];
 /** A single panel is reached through the registry (panels/registry.ts), and by the flight view, which shows parts of some. */
 const DOORS = { 'panels/*': ['panels', 'flight'] };

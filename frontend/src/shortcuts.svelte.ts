@@ -7,6 +7,9 @@ const TYPED = 'input:not([type="range"], [type="checkbox"], [type="radio"]), tex
 /** True where a key that goes down at `target` is typed into a field, or chooses in one. */
 export const isTyping = (target: EventTarget | null): boolean => target instanceof Element && target.closest(TYPED) !== null;
 
+/** The letters of single keys that work on every page, by what they do. */
+export const LETTERS = { flight: ['f', 'v'], bookmark: ['m'], snapshot: ['p'], keys: ['?'] } as const;
+
 /** Switch of the single keys that mark and drive (WCAG 2.1.4); remembered on this device. Esc is STOP in any case. */
 export class Shortcuts {
   on = $state(readStored(KEY) !== 'off');

@@ -70,6 +70,8 @@ export const shell = {
   settings: {
     title: 'Page settings',
     hint: 'Page settings: link, theme, sound and shortcuts',
+    find: 'Find (Ctrl+K)',
+    keys: 'All keys (?)',
     theme: 'Theme',
     themes: { device: 'Same as device', dark: 'Dark', sunlight: 'Sunlight' },
     shortcuts: 'Single-key shortcuts',

@@ -1,6 +1,6 @@
 /** s that the arrow keys seek by, without and with shift */
 export const STEP = 5;
-const STEP_FAR = 30;
+export const STEP_FAR = 30;
 
 /** What a key does in a replay: play or pause, or s to seek by; null where it is not for the replay. */
 export function keyAction(event: KeyboardEvent): 'toggle' | number | null {

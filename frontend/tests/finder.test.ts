@@ -1,0 +1,35 @@
+import { readFileSync } from 'node:fs';
+import path from 'node:path';
+import { describe, expect, it } from 'vitest';
+import { LEFT_HAND, RIGHT_HAND } from '../src/drive/keys';
+import { keyGroups } from '../src/finder/keys';
+import { matching, type Finding } from '../src/finder/search';
+
+const finding = (name: string): Finding => ({ kind: 'page', name, go: () => undefined });
+const names = (typed: string, ...all: string[]) => matching(all.map(finding), typed).map(({ name }) => name);
+
+describe('finding', () => {
+  it('takes names with all words, those first that begin with them', () => {
+    expect(names('se', 'Missions', 'Use', 'Sessions')).toEqual(['Sessions', 'Use']);
+    expect(names('view flight', 'Flight view', 'View')).toEqual(['Flight view']);
+    expect(names('(.*', 'Flight view')).toEqual([]);
+    expect(names('  ', 'a', 'b')).toEqual(['a', 'b']);
+  });
+
+  it('shows a few of many', () => {
+    expect(names('x', ...Array.from({ length: 10_000 }, (_, place) => `x${place}`))).toHaveLength(8);
+  });
+});
+
+describe('the list of keys', () => {
+  it('has every key that drives', () => {
+    const caps = keyGroups().flatMap(({ keys }) => keys.map((key) => key.caps));
+    for (const { cap } of [...LEFT_HAND, ...RIGHT_HAND].flat()) expect(caps).toContain(cap);
+  });
+
+  it('is the one of the manual', () => {
+    const manual = readFileSync(path.resolve(import.meta.dirname, '../../docs/reference/keys.md'), 'utf8');
+    const tables = keyGroups().map(({ title, keys }) => [`## ${title}`, '', '| key | does |', '|---|---|', ...keys.map(({ caps, what }) => `| ${caps} | ${what} |`), ''].join('\n'));
+    expect(manual.slice(manual.indexOf('## '))).toBe(tables.join('\n'));
+  });
+});
