@@ -16,6 +16,8 @@ export class Flight {
   dark = $state('');
   /** px that the bar of states takes at the top */
   bar = $state(0);
+  /** whether the bar of states and the notices are hidden: visitors see an exhibit */
+  hidden = $state(false);
   #came = false;
   #left = false;
   #page: PageName = 'unknown';

@@ -6,6 +6,7 @@ type Load = () => Promise<{ default: Component }>;
 
 export const lazyPages = {
   flight: () => import('./flight/FlightView.svelte'),
+  exhibit: () => import('./flight/Exhibit.svelte'),
   tune: () => import('./pages/tune/Tune.svelte'),
   missions: () => import('./pages/missions/Missions.svelte'),
   scenarios: () => import('./pages/scenarios/Scenarios.svelte'),

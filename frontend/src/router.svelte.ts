@@ -4,7 +4,7 @@ import { pages } from './texts/pages';
 
 /** The pages that have a tab. */
 export const PAGES = ['operate', 'tune', 'missions', 'scenarios', 'comm-tests', 'sessions', 'system'] as const;
-const ALL = [...PAGES, 'flight', 'gamepads', 'replay', 'people', 'bring-up'] as const;
+const ALL = [...PAGES, 'flight', 'exhibit', 'gamepads', 'replay', 'people', 'bring-up'] as const;
 
 export type PageName = (typeof ALL)[number] | 'unknown';
 

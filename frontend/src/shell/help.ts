@@ -4,6 +4,7 @@ import type { PageName } from '../router.svelte';
 const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Record<PageName, string>> = {
   operate: 'use/operate/',
   flight: 'use/fly/',
+  exhibit: 'use/exhibit/',
   tune: 'use/tune/',
   'tune/parameters': 'use/tune/#change-parameters',
   'tune/craft': 'use/identify/',

@@ -2,6 +2,7 @@
 export const pages = {
   operate: 'Operate',
   flight: 'Flight view',
+  exhibit: 'Exhibit',
   tune: 'Tune',
   missions: 'Missions',
   scenarios: 'Scenarios',
