@@ -2,7 +2,7 @@ import { createContext } from 'svelte';
 import { readStored, writeStored } from './storage';
 
 const KEY = 'mucat-shortcuts';
-const TYPED = 'input:not([type="range"], [type="checkbox"], [type="radio"]), textarea, select, [contenteditable]';
+const TYPED = 'input:not([type="range"], [type="checkbox"], [type="radio"]), textarea, select, [contenteditable], [data-typed]';
 
 /** True where a key that goes down at `target` is typed into a field, or chooses in one. */
 export const isTyping = (target: EventTarget | null): boolean => target instanceof Element && target.closest(TYPED) !== null;

@@ -5,6 +5,7 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
+from tests.browser.code import write_code
 from tests.browser.scenarios import open_scenarios
 from tests.stack import Stack
 
@@ -46,10 +47,10 @@ def test_a_scenario_is_written_run_and_found_as_a_session(page: Page, stack: Sta
     open_scenarios(page)
     page.get_by_role("button", name="Edit").click()
     text = page.get_by_role("textbox", name="Scenario as TOML")
-    text.fill(TEXT.replace("depth = 3.0", "deep = 3.0"))
+    write_code(text, TEXT.replace("depth = 3.0", "deep = 3.0"))
     expect(page.get_by_text("scene: depth is missing")).to_be_visible()
     expect(page.get_by_role("button", name="Run in simulation")).to_be_disabled()
-    text.fill(TEXT)
+    write_code(text, TEXT)
     expect(page.get_by_text("The scenario is valid.")).to_be_visible()
     hold_to_run(page)
 
@@ -65,7 +66,7 @@ def test_stop_ends_a_scenario(page: Page) -> None:
     open_scenarios(page)
     page.get_by_role("button", name="Edit").click()
     text = page.get_by_role("textbox", name="Scenario as TOML")
-    text.fill(TEXT.replace("duration = 3", "duration = 300").replace("at = 2\n", "at = 200\n"))
+    write_code(text, TEXT.replace("duration = 3", "duration = 300").replace("at = 2\n", "at = 200\n"))
     expect(page.get_by_text("The scenario is valid.")).to_be_visible()
     hold_to_run(page)
     running = page.get_by_role("region", name="Running")

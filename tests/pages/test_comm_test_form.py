@@ -6,6 +6,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
+from tests.browser.code import write_code
 from tests.pages.dive_site import DiveSite
 
 FIGURE_10 = Path("firmware/examples/comm_test/figure10.json")
@@ -37,7 +38,10 @@ def test_the_choice_of_tests_counts_the_problems_of_each(page: Page) -> None:
     open_form(page)
     (test,) = json.loads(FIGURE_10.read_text(encoding="utf-8"))
     page.get_by_role("button", name="JSON", exact=True).click()
-    page.get_by_label("The document as JSON").fill(json.dumps([test, test | {"delay": [-1], "expected": 0}]))
+    write_code(
+        page.get_by_role("textbox", name="The document as JSON"),
+        json.dumps([test, test | {"delay": [-1], "expected": 0}]),
+    )
     page.get_by_role("button", name="Edit", exact=True).click()
     options = page.get_by_label("Test of the document").locator("option")
     expect(options).to_have_text([re.compile(r"^Test 1 of 2: [^(]*$"), re.compile(r"\(2 problems\)$")])

@@ -1,11 +1,13 @@
 """The list of scenarios; tests/browser runs them."""
 
 import re
+import tomllib
 
 from playwright.sync_api import Page, Route, expect
 
 from server.features.scenarios.library import _shipped
 from server.platform.settings import DataFolder
+from tests.browser.code import draft_of, write_code
 from tests.browser.scenarios import open_scenarios
 from tests.pages.dive_site import DiveSite
 
@@ -44,7 +46,7 @@ def test_an_edited_scenario_stays_in_the_list_until_it_is_saved(page: Page, site
     open_scenarios(page)
     text = _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1)
     page.get_by_role("button", name="Edit", exact=True).click()
-    page.get_by_label("Scenario as TOML").fill(text)
+    write_code(page.get_by_role("textbox", name="Scenario as TOML"), text)
     edited = page.get_by_role("radio", name=re.compile("^Edited"))
     expect(edited).to_be_checked()
     page.get_by_role("radio", name=re.compile("The link is lost")).check()
@@ -53,7 +55,8 @@ def test_an_edited_scenario_stays_in_the_list_until_it_is_saved(page: Page, site
     page.get_by_role("link", name="Scenarios", exact=True).click()
     edited.check()
     page.get_by_role("button", name="Edit", exact=True).click()
-    expect(page.get_by_label("Scenario as TOML")).to_have_value(text)
+    expect(page.get_by_role("textbox", name="Scenario as TOML")).to_contain_text('name = "mine"')
+    assert draft_of(page, "mucat-scenario") == text
     try:
         page.get_by_role("button", name="Save as mine").click()
         expect(page.get_by_role("radio", name=re.compile("your own"))).to_be_checked()
@@ -75,3 +78,71 @@ def test_the_run_after_a_cancelled_one_can_be_cancelled(page: Page, site: DiveSi
         expect(page.get_by_role("button", name="Cancel", exact=True)).to_be_enabled()
     finally:
         site.api.post("/scenarios/cancel").raise_for_status()
+
+
+def test_an_event_is_moved_edited_added_and_deleted_and_the_text_keeps_its_comments(page: Page) -> None:
+    open_scenarios(page)
+    page.get_by_role("button", name="Edit", exact=True).click()
+    before = _shipped()["figure_14"]
+    box = page.get_by_role("textbox", name="Scenario as TOML")
+    expect(box).to_be_visible()
+    card = page.get_by_role("slider", name="card yellow").first
+    # By mouse: three quarters of the line are 45 s.
+    arm, stop = page.get_by_role("slider", name="arm"), page.get_by_role("slider", name="stop")
+    left, right = (one.bounding_box() or {} for one in (arm, stop))
+    card.hover()
+    page.mouse.down()
+    end = left["x"] + (right["x"] - left["x"]) * 21 / 59 + left["width"] / 2
+    page.mouse.move(end, left["y"] + left["height"] / 2, steps=4)
+    page.mouse.up()
+    expect(card).to_have_attribute("aria-valuetext", re.compile(r"^2[12](\.\d)? s"))
+    # By keys, and by its fields.
+    card.press("ArrowRight")
+    card.press("ArrowDown")
+    away = page.get_by_role("slider", name="card", exact=True)
+    expect(away).to_be_focused()
+    page.get_by_label("at", exact=True).fill("31")
+    page.get_by_label("at", exact=True).press("Enter")
+    page.get_by_label("colour").select_option("red")
+    away = page.get_by_role("slider", name="card red")
+    expect(away).to_have_attribute("aria-valuenow", "31")
+    page.get_by_label("New event").select_option("current")
+    page.get_by_role("button", name="Add", exact=True).click()
+    page.get_by_label("north").fill("0,1")
+    page.get_by_label("north").press("Enter")
+    expect(page.get_by_role("slider", name="current 0.1")).to_be_visible()
+    stop.press("Delete")
+    expect(stop).to_have_count(0)
+    text = draft_of(page, "mucat-scenario")
+    assert text.startswith(before[: before.index("[[events]]")])
+    events = tomllib.loads(text)["events"]
+    assert [event["do"] for event in events] == ["arm", "card", "card", "card", "current"]
+    assert events[2] == {"at": 31, "do": "card", "colour": "red"}
+    assert events[4]["north"] == 0.1
+
+    # A text that is no TOML leaves the last events, and the problem stands in its line.
+    write_code(box, text.replace("duration = 60", "duration ="))
+    expect(page.get_by_text("The text is no TOML now.")).to_be_visible()
+    expect(page.get_by_role("slider", name="card red")).to_have_attribute("aria-readonly", "true")
+    page.get_by_role("button", name="Line 8").click()
+    expect(box).to_be_focused()
+    page.keyboard.press("Tab")
+    expect(box).not_to_be_focused()
+    box.focus()
+    page.keyboard.press("Shift+Tab")
+    expect(box).not_to_be_focused()
+
+
+def test_a_scenario_lists_its_runs(page: Page, site: DiveSite) -> None:
+    text = _shipped()["figure_14"].replace("duration = 60", "duration = 5").replace('"figure_14"', '"brief"')
+    text = text[: text.index("[[events]]")]
+    site.api.post("/scenarios/runs", json={"text": text, "place": "simulated"}).raise_for_status()
+    open_scenarios(page)
+    expect(page.get_by_role("heading", name="Last run")).to_be_visible()
+    page.get_by_role("button", name="Edit", exact=True).click()
+    write_code(page.get_by_role("textbox", name="Scenario as TOML"), text)
+    runs = page.get_by_role("region", name="Runs of")
+    expect(runs.get_by_role("listitem")).to_have_count(1)
+    expect(runs.locator("polyline")).to_have_attribute("points", re.compile(r"\d"))
+    runs.get_by_role("link").click()
+    expect(page).to_have_url(re.compile("#/sessions/"))

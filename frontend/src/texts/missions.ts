@@ -51,7 +51,7 @@ export const missions = {
     moved: (place: string) => `Moved to ${place}`,
     steps: 'Steps',
     view: 'View',
-    views: { trial: 'Dry run', toml: 'TOML', versions: 'Versions' },
+    views: { trial: 'Dry run', toml: 'TOML', runs: 'Runs', versions: 'Versions' },
     unknown: (name: string) => `The library has no mission “${name}”.`,
     other: (name: string) => (name === '' ? 'A new mission has unsaved changes.' : `“${name}” has unsaved changes.`),
     goOn: 'Continue with it',
@@ -152,6 +152,9 @@ export const missions = {
     outcome: 'Outcome',
     empty: 'No dry run yet',
     emptyText: 'It shows how often the mission succeeds, how long it takes, how deep it goes and which step fails.',
+  },
+  runs: {
+    about: 'The last runs that sessions have recorded, on the robot and in simulation.',
   },
   plan: {
     title: 'Planned depth',

@@ -63,6 +63,14 @@ export const parts = {
   shownOf: (shown: string, all: string) => `${shown} of ${all}`,
   showMore: 'Show more',
   searchSessions: 'Search sessions',
+  pastRuns: {
+    none: 'No session has recorded a run yet.',
+  },
+  code: {
+    problems: 'Problems',
+    line: (line: number) => `Line ${line}`,
+    keys: 'Tab leaves the text. F8: next problem. Ctrl+Z: undo. Esc is STOP.',
+  },
   notLoaded: 'This part of the page could not be loaded: the server is offline or was updated. The robot is not affected.',
   closeHint: 'To close, press ✕ or outside. Esc is STOP.',
   camera: (detected: readonly string[]) => `Camera: ${detected.length > 0 ? `${detected.join(', ')} detected` : 'nothing detected'}`,

@@ -45,6 +45,27 @@ export const scenarios = {
     liveHint: 'The scenario can arm and move the robot.',
     liveBusy: 'A scenario is running. A live one needs it to end first.',
   },
+  runs: {
+    title: (scenario: string) => `Runs of “${scenario}”`,
+    seed: (seed: number) => `seed ${seed}`,
+    more: (shown: number, all: number) => `The last ${shown} of ${all}. Sessions has all.`,
+    states: {
+      recording: { name: 'recording', meaning: 'It runs now.' },
+      complete: { name: 'complete', meaning: 'Recorded to its end.' },
+      interrupted: { name: 'interrupted', meaning: 'The server ended during the recording.' },
+    },
+  },
+  track: {
+    keys: 'Drag an event, or press ← → to move it by 0.5 s (with Shift 5 s). ↑ ↓: event before or after. Delete: delete it.',
+    lastGood: 'The text is no TOML now. The events are those of the last text that was.',
+    event: 'Chosen event',
+    at: 's since the start',
+    unset: 'not set',
+    range: (minimum: number, maximum: number) => `${minimum} to ${maximum}`,
+    kind: 'New event',
+    add: 'Add',
+    newText: 'New bookmark',
+  },
   place: {
     legend: 'Run on',
     live: 'On the robot, live',

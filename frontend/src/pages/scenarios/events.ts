@@ -21,7 +21,8 @@ export const LEGEND: readonly { readonly sort: Sort; readonly words: string }[] 
   { sort: 'marker', words: texts.legend.bookmark },
 ];
 
-export const sortOf = (event: ScenarioEvent): Sort => SORTS[event.do] ?? 'operator';
+export const sortBy = (kind: string): Sort => SORTS[kind] ?? 'operator';
+export const sortOf = (event: ScenarioEvent): Sort => sortBy(event.do);
 
 /** s of a scenario, as short as they can be said */
 export const moment = (seconds: number): string => `${Number(seconds.toFixed(1))} s`;
