@@ -89,7 +89,9 @@ def test_an_event_is_moved_edited_added_and_deleted_and_the_text_keeps_its_comme
     card = page.get_by_role("slider", name="card yellow").first
     # By mouse: three quarters of the line are 45 s.
     arm, stop = page.get_by_role("slider", name="arm"), page.get_by_role("slider", name="stop")
-    left, right = (one.bounding_box() or {} for one in (arm, stop))
+    left, right = arm.bounding_box(), stop.bounding_box()
+    assert left is not None
+    assert right is not None
     card.hover()
     page.mouse.down()
     end = left["x"] + (right["x"] - left["x"]) * 21 / 59 + left["width"] / 2
