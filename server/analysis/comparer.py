@@ -87,7 +87,7 @@ class Comparer:
 
     def signals(self, session: int) -> list[Signal]:
         """Return the signals of a session that can be drawn."""
-        recording = self._open(session)
+        recording = self.open(session)
         with reading_content(recording.row):
             return list_signals(recording)
 
@@ -124,11 +124,12 @@ class Comparer:
     def _read_history(self, recording: Recording) -> ControlHistory:
         return self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
 
-    def _open(self, session: int) -> Recording:
+    def open(self, session: int) -> Recording:
+        """Return the recording of a session."""
         return Recording(self._store, find_row(self._store, session))
 
     def _align(self, query: LinesQuery) -> list[_AlignedSession]:
-        recordings = [self._open(number) for number in dict.fromkeys(query.sessions)]
+        recordings = [self.open(number) for number in dict.fromkeys(query.sessions)]
         return list(self._threads.map(lambda recording: self._align_one(recording, query), recordings))
 
     def _align_one(self, recording: Recording, query: LinesQuery) -> _AlignedSession:

@@ -2,20 +2,30 @@
 
 import json
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
-from typing import Any
+from datetime import UTC, datetime, tzinfo
+from itertools import groupby, islice
+from typing import Annotated, Any, Literal
 
-from sqlalchemy import ColumnElement
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from sqlalchemy import ColumnElement, exists, literal, true
 from sqlmodel import col, desc, func, or_, select
 
 from robot_runtime.contract.chunks import row_fields
+from robot_runtime.contract.topics import FILM
 from server.library.bookmarks import select_bookmarks
 from server.library.content import Recording, reading_content
 from server.library.crafts import read_crafts, which_water
-from server.library.schemas import SHOWN_MAX, RecordedColumn, RecordedTopic, SessionDetail, SessionGap
-from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
+from server.library.schemas import (
+    SHOWN_MAX,
+    RecordedColumn,
+    RecordedTopic,
+    SessionDetail,
+    SessionGap,
+    SessionGroup,
+)
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
 from server.platform.searching import fold
 from server.platform.store import Reader
 from server.recording.schemas import Origin, Session, State
@@ -28,7 +38,15 @@ TAGS_SHOWN = 100
 COLUMNS_SHOWN = 5000
 """Columns of all topics of one session that its description names; this version records some 250."""
 
+Grouping = Literal["none", "day", "scenario", "mission"]
+GROUPS_MAX = 5000
+"""Groups in one answer."""
+
 _READ = [getattr(SessionRow, name) for name in COLUMNS]
+_HAS_FILM = exists().where(col(Chunk.session_id) == col(SessionRow.id), col(Chunk.topic) == FILM.name)
+_LISTED: list[Any] = [*_READ, SummaryRow.document, _HAS_FILM]
+_SCENARIO: Any = col(SessionRow.scenario_name)
+_MISSION: ColumnElement[str] = func.coalesce(func.json_extract(SummaryRow.document, "$.mission"), "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +61,30 @@ class SessionPage:
     following: int | None
 
 
+class SessionSelection(BaseModel):
+    """Conditions on sessions; a session has to meet all that are given."""
+
+    model_config = ConfigDict(extra="forbid")
+    search: Annotated[
+        str, Field(max_length=200, description="words that name, notes, tags or scenario have")
+    ] = ""
+    tag: Annotated[
+        list[str], Field(max_length=TAGS_SHOWN, description="tags that they have, all of them")
+    ] = []
+    origin: Origin | None = None
+    state: State | None = None
+    scenario: Annotated[str, Field(max_length=200, description="name of the scenario that they ran")] = ""
+    controller: Annotated[str, Field(max_length=100, description="title of one that held the depth")] = ""
+    film: Annotated[bool, Field(description="only those with a film")] = False
+    kept: Annotated[bool, Field(description="only those that the rules of retention never take")] = False
+    since: Annotated[AwareDatetime | None, Field(description="started then or later")] = None
+    until: Annotated[AwareDatetime | None, Field(description="started before")] = None
+    deleted: Annotated[bool, Field(description="those in the bin instead")] = False
+
+
+EVERY_SESSION = SessionSelection()
+
+
 class Listing:
     """Read access to every session of a database.
 
@@ -54,32 +96,26 @@ class Listing:
 
     def page(
         self,
-        search: str = "",
-        tags: Collection[str] = (),
-        origin: Origin | None = None,
+        selection: SessionSelection = EVERY_SESSION,
         *,
-        state: State | None = None,
-        scenario: str = "",
-        deleted: bool = False,
+        by: Grouping = "none",
         before: int | None = None,
+        skip: int = 0,
         limit: int = PAGE,
     ) -> SessionPage:
-        """Return sessions with all words of `search` in name, notes, tags or scenario, and all tags; newest
-        first.
+        """Return the selected sessions in the order of `groups`, within a group newest first.
 
-        With `scenario` only its runs; with `deleted` those in the bin instead; with `before` only those of
-        lower numbers.
+        With `before` only those of lower numbers; without the first `skip` of them.
         """
-        chosen = [*_conditions(search, tags, origin, state, deleted=deleted)]
-        if scenario:
-            chosen.append(col(SessionRow.scenario_name) == scenario)
+        chosen = [*_conditions(selection)]
         rest = [] if before is None else [col(SessionRow.id) < before]
-        query = select(*_READ).where(*chosen, *rest).order_by(col(SessionRow.id).desc()).limit(limit + 1)
+        query = _joined(select(*_LISTED)).where(*chosen, *rest)
+        query = query.order_by(*_order(by)).limit(limit + 1).offset(skip)
         with self._reader.read() as database:
             total = database.exec(select(func.count()).select_from(SessionRow).where(*chosen)).one()
-            entries = [dict(zip(COLUMNS, row, strict=True)) for row in database.connection().execute(query)]
+            entries = list(database.connection().execute(query))
             rows = entries[:limit]
-            ids = [row["id"] for row in rows]
+            ids = [row.id for row in rows]
             tagged: defaultdict[int, list[str]] = defaultdict(list)
             there = select(SessionTag.session_id, SessionTag.tag).where(col(SessionTag.session_id).in_(ids))
             for session, tag in database.exec(there):
@@ -87,26 +123,66 @@ class Listing:
             counts = select(BookmarkRow.session_id, func.count()).where(col(BookmarkRow.session_id).in_(ids))
             marked = dict(database.exec(counts.group_by(col(BookmarkRow.session_id))).all())
         return SessionPage(
-            [from_columns(row, tagged[row["id"]], marked.get(row["id"], 0)) for row in rows],
+            [
+                from_columns(
+                    dict(zip(COLUMNS, values, strict=True)),
+                    tagged[values[0]],
+                    marked.get(values[0], 0),
+                    film=film,
+                    summary=summary,
+                )
+                for *values, summary, film in rows
+            ],
             total,
             ids[-1] if len(entries) > limit else None,
         )
 
-    def pages(
-        self, search: str = "", tags: Collection[str] = (), *, deleted: bool = False
-    ) -> Iterator[list[Session]]:
+    def pages(self, selection: SessionSelection = EVERY_SESSION) -> Iterator[list[Session]]:
         """Yield all pages of `page`, one after the other."""
         before = None
         while True:
-            page = self.page(search, tags, deleted=deleted, before=before, limit=PAGE_MAX)
+            page = self.page(selection, before=before, limit=PAGE_MAX)
             yield page.sessions
             if (before := page.following) is None:
                 return
 
+    def groups(self, selection: SessionSelection, by: Grouping, zone: tzinfo = UTC) -> list[SessionGroup]:
+        """Return the groups of the selected sessions, in the order in which `page` has them.
+
+        Days are those of `zone`. At most `GROUPS_MAX`: the last one then has all that follow.
+        """
+        label = {
+            "none": literal(""),
+            "day": col(SessionRow.started),
+            "scenario": _SCENARIO,
+            "mission": _MISSION,
+        }
+        query = _joined(select(label[by])).where(*_conditions(selection)).order_by(*_order(by))
+        with self._reader.read() as database:
+            labels = [row[0] for row in database.connection().execute(query)]
+        if by == "day":
+            labels = [f"{datetime.fromtimestamp(started, zone):%Y-%m-%d}" for started in labels]
+        found = [SessionGroup(name=name, count=len(list(some))) for name, some in groupby(labels)]
+        rest = found[GROUPS_MAX:]
+        if rest:
+            found[GROUPS_MAX - 1].count += sum(group.count for group in rest)
+        return found[:GROUPS_MAX]
+
+    def controllers(self) -> list[str]:
+        """Return the controllers that sessions outside the bin used, in alphabetical order; at most
+        `TAGS_SHOWN`.
+        """
+        used = func.json_each(SummaryRow.document, "$.controllers").table_valued("value")
+        query = select(used.c.value).select_from(SummaryRow).join(used, true()).distinct()
+        query = query.join(SessionRow, col(SessionRow.id) == col(SummaryRow.session_id))
+        query = query.where(*_conditions(EVERY_SESSION)).order_by(used.c.value).limit(TAGS_SHOWN)
+        with self._reader.read() as database:
+            return list(database.connection().execute(query).scalars())
+
     def tags(self) -> list[str]:
         """Return the tags of sessions outside the bin, those of most sessions first; at most `TAGS_SHOWN`."""
         used = select(SessionTag.tag).join(SessionRow, col(SessionRow.id) == col(SessionTag.session_id))
-        used = used.where(*_conditions("", (), None, None, deleted=False))
+        used = used.where(*_conditions(EVERY_SESSION))
         ordered = used.group_by(SessionTag.tag).order_by(desc(func.count()), col(SessionTag.tag))
         with self._reader.read() as database:
             return list(database.exec(ordered.limit(TAGS_SHOWN)))
@@ -117,7 +193,9 @@ class Listing:
         with self._reader.read() as database:
             tags = database.exec(select(SessionTag.tag).where(SessionTag.session_id == session)).all()
             bookmarks = select(func.count()).select_from(BookmarkRow).where(BookmarkRow.session_id == session)
-            return from_row(row, tags, database.exec(bookmarks).one())
+            more = _joined(select(SummaryRow.document, _HAS_FILM)).where(SessionRow.id == session)
+            summary, film = database.connection().execute(more).one()
+            return from_row(row, tags, database.exec(bookmarks).one(), film=film, summary=summary)
 
     def detail(self, session: int) -> SessionDetail:
         """Return one session with all data except its samples."""
@@ -158,21 +236,49 @@ class Listing:
             )
 
 
-def _conditions(
-    search: str, tags: Collection[str], origin: Origin | None, state: State | None, *, deleted: bool
-) -> Iterator[ColumnElement[bool]]:
+def _joined(query: Any) -> Any:
+    """Return the query of sessions with their summaries, where there are some."""
+    return query.select_from(SessionRow).outerjoin(
+        SummaryRow, col(SummaryRow.session_id) == col(SessionRow.id)
+    )
+
+
+def _order(by: Grouping) -> list[ColumnElement[Any]]:
+    """Return the order of the list; sessions without such a thing come last."""
+    newest = col(SessionRow.id).desc()
+    if by in ("none", "day"):
+        return [newest]
+    label = _SCENARIO if by == "scenario" else _MISSION
+    return [label == "", label, newest]
+
+
+def _conditions(selection: SessionSelection) -> Iterator[ColumnElement[bool]]:
     row = SessionRow
     yield col(row.state).not_in(HIDDEN)
-    yield col(row.deleted).is_not(None) if deleted else col(row.deleted).is_(None)
-    if origin is not None:
-        yield col(row.origin) == origin
-    if state is not None:
-        yield col(row.state) == state
+    yield col(row.deleted).is_not(None) if selection.deleted else col(row.deleted).is_(None)
+    if selection.origin is not None:
+        yield col(row.origin) == selection.origin
+    if selection.state is not None:
+        yield col(row.state) == selection.state
+    if selection.scenario:
+        yield col(row.scenario_name) == selection.scenario
+    if selection.kept:
+        yield col(row.kept).is_(True)
+    if selection.since is not None:
+        yield col(row.started) >= selection.since.timestamp()
+    if selection.until is not None:
+        yield col(row.started) < selection.until.timestamp()
+    if selection.film:
+        yield _HAS_FILM
+    if selection.controller:
+        used = func.json_each(SummaryRow.document, "$.controllers").table_valued("value")
+        those = select(SummaryRow.session_id).join(used, true())
+        yield col(row.id).in_(those.where(used.c.value == selection.controller))
     tagged = select(SessionTag.session_id)
-    for tag in tags:
+    for tag in selection.tag:
         yield col(row.id).in_(tagged.where(func.casefold(SessionTag.tag) == tag.casefold()))
     texts = func.fold(col(row.name) + "\n" + col(row.note) + "\n" + col(row.scenario_name))
-    for word in fold(search).split():
+    for word in fold(selection.search).split():
         in_tags = tagged.where(func.instr(func.fold(SessionTag.tag), word) > 0)
         in_notes = select(BookmarkRow.session_id).where(func.instr(func.fold(BookmarkRow.text), word) > 0)
         yield or_(func.instr(texts, word) > 0, col(row.id).in_(in_tags), col(row.id).in_(in_notes))

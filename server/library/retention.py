@@ -20,7 +20,7 @@ from robot_runtime.clock import Clock
 from server.library.config import SessionsConfig
 from server.library.film_removal import FilmRemoval
 from server.library.storage import GIGABYTE, measure
-from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
 from server.platform.notices import Notices
 from server.platform.schema import INCREMENTAL
 from server.platform.settings import Settings
@@ -247,7 +247,8 @@ class RetentionWorker:
                 await asyncio.sleep(PAUSE)
 
         def remove_rest(connection: Connection) -> None:
-            connection.execute(delete(SessionTag).where(col(SessionTag.session_id) == session))
+            for table in (SessionTag, SummaryRow):
+                connection.execute(delete(table).where(col(table.session_id) == session))
             connection.execute(delete(SessionRow).where(col(SessionRow.id) == session))
 
         await self._store.write(remove_rest, frees=True)

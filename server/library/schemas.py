@@ -63,6 +63,13 @@ class RecordedTopic(BaseModel):
     columns: list[RecordedColumn]
 
 
+class SessionGroup(BaseModel):
+    """Sessions that follow each other in the list."""
+
+    name: str = Field(description="a day such as 2026-05-31, a scenario or a mission; empty: without one")
+    count: int
+
+
 class SessionDetail(Session):
     """A session with all data except the samples."""
 

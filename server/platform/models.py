@@ -62,6 +62,18 @@ class SessionTag(SQLModel, table=True):
     tag: str
 
 
+class SummaryRow(SQLModel, table=True):
+    """What the list says about a session that has ended: a `SessionSummary` as JSON.
+
+    It follows from the samples, and is computed again where it is missing.
+    """
+
+    __tablename__ = "session_summary"
+
+    session_id: int = Field(foreign_key="session.id", primary_key=True)
+    document: str
+
+
 class BookmarkRow(SQLModel, table=True):
     """A bookmark: a moment (s, steady clock), its note (Markdown), when it was made (UTC, s since 1970)."""
 

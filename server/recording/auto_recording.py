@@ -12,6 +12,7 @@ from server.platform.models import SessionRow
 from server.platform.notices import Notices
 from server.platform.store import StoreError
 from server.recording.recorder import Recorder, RecordingRefusedError
+from server.recording.session import default_name
 
 log = logging.getLogger(__name__)
 
@@ -103,7 +104,7 @@ class AutoRecorder:
     async def _begin(self, state: str) -> None:
         try:
             await self._recorder.start(
-                await self._make_row(f"Armed {datetime.now(UTC):%Y-%m-%d %H:%M} UTC", state)
+                await self._make_row(default_name(datetime.now(UTC), armed=True), state)
             )
             self._write_arming()
         except RecordingRefusedError as problem:

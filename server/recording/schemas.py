@@ -10,6 +10,30 @@ GapKind = Literal["missed", "restarted", "not stored", "damaged", "removed"]
 Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
 
 
+CURVE_POINTS = 60
+"""Depths of a summary's curve."""
+
+
+class SessionSummary(BaseModel):
+    """What the list says about a session that has ended. What its samples do not say is null or empty."""
+
+    depth: float | None = Field(description="m, the greatest")
+    armed: float = Field(description="s, all armed times together")
+    controllers: list[str] = Field(description="titles of those that held the depth while armed")
+    modes: list[str] = Field(description="in which it was while armed")
+    cards: list[str] = Field(description="colours that were before the camera, in the order of their times")
+    mission: str = Field(description="name of the first one; empty without")
+    alarms: int = Field(description="number of alarms that began")
+    curve: list[float | None] = Field(
+        description="m, the greatest depth of each of equal parts of its duration; null: none was measured"
+    )
+    face: float | None = Field(
+        description="s since the start: from here on the first small picture shows a card, or the deepest "
+        "moment; null without pictures"
+    )
+    damaged: bool = Field(description="true: a part of the samples cannot be read, and is not in here")
+
+
 class Session(BaseModel):
     """One recording; "interrupted" if the server ended without closing it: its stored samples remain."""
 
@@ -34,5 +58,9 @@ class Session(BaseModel):
     software: str = Field(description="hash of the runtime's sources, 16 hexadecimal digits, or empty")
     scenario_name: str = Field(description="empty without a scenario")
     seed: int | None
+    film: bool = Field(default=False, description="whether the camera was filmed")
+    summary: SessionSummary | None = Field(
+        default=None, description="null while it records, and until its samples have been read"
+    )
     kept: bool = Field(description="protected from the rules of retention")
     deleted: datetime | None = Field(description="UTC; time of its deletion, while it is in the bin")

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from sqlalchemy import Connection
@@ -17,7 +17,7 @@ from server.platform.models import SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Reader
 from server.recording.provenance import read_provenance
-from server.recording.schemas import Origin, Session
+from server.recording.schemas import Origin, Session, SessionSummary
 
 REMOVING = "removing"
 """State of a row whose samples are being removed."""
@@ -60,7 +60,7 @@ def new_row(
     now = datetime.now(UTC)
     provenance = read_provenance(settings)
     return SessionRow(
-        name=name or f"{now:%Y-%m-%d %H:%M} UTC",
+        name=name or default_name(now),
         note=note,
         state="recording",
         robot=settings.robot.name,
@@ -78,15 +78,47 @@ def new_row(
     )
 
 
-def from_row(row: SessionRow, tags: Sequence[str] = (), markers: int = 0) -> Session:
-    """Return the session of a row."""
-    return from_columns({name: getattr(row, name) for name in COLUMNS}, tags, markers)
+def default_name(moment: datetime, *, armed: bool = False) -> str:
+    """Return the name of a session that nobody has named, by the moment of its start."""
+    return f"{'Armed ' if armed else ''}{moment:%Y-%m-%d %H:%M} UTC"
 
 
-def from_columns(columns: Mapping[str, Any], tags: Sequence[str] = (), markers: int = 0) -> Session:
-    """Return the session of a row's `COLUMNS`."""
+def has_default_name(name: str, started: datetime) -> bool:
+    """Return True where nobody has named a session; the name may be older than its start by a moment."""
+    moments = (started, started - timedelta(minutes=1))
+    return name in {default_name(moment, armed=armed) for moment in moments for armed in (False, True)}
+
+
+def from_row(
+    row: SessionRow,
+    tags: Sequence[str] = (),
+    markers: int = 0,
+    *,
+    film: bool = False,
+    summary: str | None = None,
+) -> Session:
+    """Return the session of a row; `summary` is the stored one, as JSON."""
+    columns = {name: getattr(row, name) for name in COLUMNS}
+    return from_columns(columns, tags, markers, film=film, summary=summary)
+
+
+def from_columns(
+    columns: Mapping[str, Any],
+    tags: Sequence[str] = (),
+    markers: int = 0,
+    *,
+    film: bool = False,
+    summary: str | None = None,
+) -> Session:
+    """Return the session of a row's `COLUMNS`; `summary` is the stored one, as JSON."""
     dates = {name: _moment(columns[name]) for name in ("started", "ended", "deleted")}
-    return Session(**{**columns, **dates}, tags=sorted(tags, key=str.casefold), markers=markers)
+    return Session(
+        **{**columns, **dates},
+        tags=sorted(tags, key=str.casefold),
+        markers=markers,
+        film=film,
+        summary=None if summary is None else SessionSummary.model_validate_json(summary),
+    )
 
 
 def find_row(store: Reader, session: int) -> SessionRow:

@@ -124,6 +124,8 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/storage"): "viewer",
     ("GET", "/api/backup"): "administer",
     ("GET", "/api/sessions"): "viewer",
+    ("GET", "/api/sessions/controllers"): "viewer",
+    ("GET", "/api/sessions/groups"): "viewer",
     ("GET", "/api/tags"): "viewer",
     ("POST", "/api/sessions"): "operator",
     ("GET", "/api/sessions/{session}"): "viewer",

@@ -307,6 +307,12 @@ export interface paths {
         get: operations["listSessions"];
         post: operations["startSession"];
     };
+    "/api/sessions/controllers": {
+        get: operations["listSessionControllers"];
+    };
+    "/api/sessions/groups": {
+        get: operations["listSessionGroups"];
+    };
     "/api/sessions/{session}": {
         get: operations["getSession"];
         delete: operations["deleteSession"];
@@ -2387,6 +2393,11 @@ export interface components {
             duration: number;
             /** @description UTC; null while it records */
             ended: string | null;
+            /**
+             * @description whether the camera was filmed
+             * @default false
+             */
+            film: boolean;
             /** @description hash of the firmware, 16 hexadecimal digits; empty where unknown */
             firmware: string;
             id: number;
@@ -2416,6 +2427,8 @@ export interface components {
             started: string;
             /** @enum {string} */
             state: "recording" | "complete" | "interrupted";
+            /** @description null while it records, and until its samples have been read */
+            summary: components["schemas"]["SessionSummary"] | null;
             /** @description in alphabetical order */
             tags: string[];
             /** @description of the server that recorded it */
@@ -2452,6 +2465,11 @@ export interface components {
             duration: number;
             /** @description UTC; null while it records */
             ended: string | null;
+            /**
+             * @description whether the camera was filmed
+             * @default false
+             */
+            film: boolean;
             /** @description hash of the firmware, 16 hexadecimal digits; empty where unknown */
             firmware: string;
             /** @description number of all gaps */
@@ -2495,6 +2513,8 @@ export interface components {
             started: string;
             /** @enum {string} */
             state: "recording" | "complete" | "interrupted";
+            /** @description null while it records, and until its samples have been read */
+            summary: components["schemas"]["SessionSummary"] | null;
             /** @description in alphabetical order */
             tags: string[];
             topics: components["schemas"]["RecordedTopic"][];
@@ -2515,6 +2535,12 @@ export interface components {
             time: number;
             topic: string;
         };
+        /** @description Sessions that follow each other in the list. */
+        SessionGroup: {
+            count: number;
+            /** @description a day such as 2026-05-31, a scenario or a mission; empty: without one */
+            name: string;
+        };
         /** @description One session's lines. */
         SessionLines: {
             id: number;
@@ -2526,6 +2552,29 @@ export interface components {
             series: {
                 [key: string]: components["schemas"]["SignalLine"];
             };
+        };
+        /** @description What the list says about a session that has ended. What its samples do not say is null or empty. */
+        SessionSummary: {
+            /** @description number of alarms that began */
+            alarms: number;
+            /** @description s, all armed times together */
+            armed: number;
+            /** @description colours that were before the camera, in the order of their times */
+            cards: string[];
+            /** @description titles of those that held the depth while armed */
+            controllers: string[];
+            /** @description m, the greatest depth of each of equal parts of its duration; null: none was measured */
+            curve: (number | null)[];
+            /** @description true: a part of the samples cannot be read, and is not in here */
+            damaged: boolean;
+            /** @description m, the greatest */
+            depth: number | null;
+            /** @description s since the start: from here on the first small picture shows a card, or the deepest moment; null without pictures */
+            face: number | null;
+            /** @description name of the first one; empty without */
+            mission: string;
+            /** @description in which it was while armed */
+            modes: string[];
         };
         /** @description A chart's signals, by the names in recordings (`motor.angle_2`), and its length in s. */
         ShownChart: {
@@ -3298,7 +3347,9 @@ export type SessionBase = components['schemas']['SessionBase'];
 export type SessionChanges = components['schemas']['SessionChanges'];
 export type SessionDetail = components['schemas']['SessionDetail'];
 export type SessionGap = components['schemas']['SessionGap'];
+export type SessionGroup = components['schemas']['SessionGroup'];
 export type SessionLines = components['schemas']['SessionLines'];
+export type SessionSummary = components['schemas']['SessionSummary'];
 export type ShownChart = components['schemas']['ShownChart'];
 export type Signal = components['schemas']['Signal'];
 export type SignalLine = components['schemas']['SignalLine'];
@@ -4937,15 +4988,28 @@ export interface operations {
                 /** @description words that name, notes, tags or scenario have */
                 search?: string;
                 /** @description tags that they have, all of them */
-                tag?: string[] | null;
+                tag?: string[];
                 origin?: ("operator" | "arming" | "scenario" | "simulated" | "import") | null;
                 state?: ("recording" | "complete" | "interrupted") | null;
                 /** @description name of the scenario that they ran */
                 scenario?: string;
+                /** @description title of one that held the depth */
+                controller?: string;
+                /** @description only those with a film */
+                film?: boolean;
+                /** @description only those that the rules of retention never take */
+                kept?: boolean;
+                /** @description started then or later */
+                since?: string | null;
+                /** @description started before */
+                until?: string | null;
                 /** @description those in the bin instead */
                 deleted?: boolean;
+                by?: "none" | "day" | "scenario" | "mission";
                 /** @description only sessions of lower numbers */
                 before?: number | null;
+                /** @description sessions that are left out before the answer */
+                skip?: number;
                 /** @description sessions in the answer */
                 limit?: number;
             };
@@ -4976,6 +5040,54 @@ export interface operations {
             201: {
                 content: {
                     "application/json": components["schemas"]["Session"];
+                };
+            };
+        };
+    };
+    listSessionControllers: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": string[];
+                };
+            };
+        };
+    };
+    listSessionGroups: {
+        parameters: {
+            query: {
+                /** @description words that name, notes, tags or scenario have */
+                search?: string;
+                /** @description tags that they have, all of them */
+                tag?: string[];
+                origin?: ("operator" | "arming" | "scenario" | "simulated" | "import") | null;
+                state?: ("recording" | "complete" | "interrupted") | null;
+                /** @description name of the scenario that they ran */
+                scenario?: string;
+                /** @description title of one that held the depth */
+                controller?: string;
+                /** @description only those with a film */
+                film?: boolean;
+                /** @description only those that the rules of retention never take */
+                kept?: boolean;
+                /** @description started then or later */
+                since?: string | null;
+                /** @description started before */
+                until?: string | null;
+                /** @description those in the bin instead */
+                deleted?: boolean;
+                by: "none" | "day" | "scenario" | "mission";
+                /** @description whose days, such as Europe/Tallinn */
+                zone?: string;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SessionGroup"][];
                 };
             };
         };

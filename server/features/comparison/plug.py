@@ -1,18 +1,27 @@
-"""The plug of comparisons."""
+"""The plug of comparisons and summaries."""
+
+from collections.abc import Coroutine, Sequence
+from typing import Any
 
 from server.feature import Plug
+from server.features.comparison.summaries import SummaryWorker
 from server.features.comparison.worker import ComparisonWorker
 
 
 class ComparisonPlug(Plug):
-    """The plug that starts the process early where memory allows it."""
+    """The plug that starts the process early where memory allows it, and has it read what is new."""
 
-    def __init__(self, worker: ComparisonWorker) -> None:
+    def __init__(self, worker: ComparisonWorker, summaries: SummaryWorker) -> None:
         self._worker = worker
+        self._summaries = summaries
 
     def warm_up(self) -> None:
         """Start the process."""
         self._worker.prepare()
+
+    def work(self) -> Sequence[Coroutine[Any, Any, None]]:
+        """Make summaries of the sessions that have ended."""
+        return (self._summaries.run(),)
 
     async def stop(self) -> None:
         """End the process."""

@@ -12,6 +12,7 @@ from server.analysis.report import write_report
 from server.analysis.schemas import ComparisonQuery, LinesQuery, ReportQuery, StoryFiguresQuery
 from server.analysis.signals import Signal
 from server.analysis.study import Spectrum, StudyQuery
+from server.analysis.summary import summarise
 from server.analysis.track import SwumTrack
 from server.platform.errors import ApiError, UnavailableError
 from server.platform.store import Reader
@@ -70,6 +71,11 @@ def pair(comparer: Comparer, query: str) -> bytes:
     return comparer.study.pair(StudyQuery.model_validate_json(query)).model_dump_json().encode()
 
 
+def summary(comparer: Comparer, query: str) -> bytes:
+    """Return the summary of the session of this number, as JSON."""
+    return summarise(comparer.open(json.loads(query))).model_dump_json().encode()
+
+
 TASKS: Mapping[str, Task] = {
     "compare": compare,
     "lines": lines,
@@ -80,6 +86,7 @@ TASKS: Mapping[str, Task] = {
     "story_figures": story_figures,
     "spectrum": spectrum,
     "pair": pair,
+    "summary": summary,
 }
 
 

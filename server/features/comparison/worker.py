@@ -10,7 +10,18 @@ from server.platform.errors import UnavailableError
 from server.platform.settings import DataFolder
 from server.processes.task_process import TaskProcess, TaskProcessEndedError
 
-Task = Literal["compare", "lines", "signals", "report", "story", "track", "story_figures", "spectrum", "pair"]
+Task = Literal[
+    "compare",
+    "lines",
+    "signals",
+    "report",
+    "story",
+    "track",
+    "story_figures",
+    "spectrum",
+    "pair",
+    "summary",
+]
 
 SECONDS_MAX = 120.0
 REPORT_SECONDS_MAX = 600.0

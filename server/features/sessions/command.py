@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from server.platform.command_line import with_settings
+from server.platform.command_line import name_error, with_settings
 from server.platform.folder_lock import claim
 from server.platform.running_server import ask, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
@@ -20,7 +20,7 @@ from server.platform.terminal import echo
 if TYPE_CHECKING:
     from server.library.listing import Listing
     from server.library.schemas import SessionDetail
-    from server.recording.schemas import Session
+    from server.recording.schemas import Session, SessionSummary
 
 SESSION = click.argument("session", type=int)
 REQUESTS = {
@@ -45,8 +45,16 @@ def list_sessions(settings: Settings, search: tuple[str, ...], tag: tuple[str, .
 
     With WORDS, only those that have each of them in name, notes, tags or scenario.
     """
+    from pydantic import ValidationError
+
+    from server.library.listing import SessionSelection
+
+    try:
+        selection = SessionSelection(search=" ".join(search), tag=list(tag), deleted=deleted)
+    except ValidationError as problem:
+        raise SetupError("; ".join(name_error(error) for error in problem.errors())) from problem
     with _open_listing(settings) as listing:
-        for page in listing.pages(" ".join(search), tag, deleted=deleted):
+        for page in listing.pages(selection):
             echo(_tabulate(page))
 
 
@@ -116,8 +124,10 @@ def start(settings: Settings, name: str, note: str) -> None:
 @with_settings
 def stop(settings: Settings) -> None:
     """End the present recording."""
+    from server.library.listing import SessionSelection
+
     with _open_listing(settings) as listing:
-        recording = [session.id for session in listing.page(state="recording").sessions]
+        recording = [session.id for session in listing.page(SessionSelection(state="recording")).sessions]
     if not recording:
         raise SetupError("Nothing is being recorded.")
     session = ask(settings.data, "POST", f"/sessions/{recording[0]}/stop")
@@ -162,10 +172,16 @@ def _tabulate(rows: "list[Session]") -> str:
     if not rows:
         return "No matching session."
     return "\n".join(
-        f"{row.id:5}  {row.started:%Y-%m-%d %H:%M} UTC  {row.duration:8.1f} s  {row.state:11}  {row.name}"
+        f"{row.id:5}  {row.started:%Y-%m-%d %H:%M} UTC  {row.duration:8.1f} s  {row.state:11}  "
+        f"{_depth(row.summary):>7}  {row.name}"
+        + (f"  ({', '.join(row.summary.controllers)})" if row.summary and row.summary.controllers else "")
         + (f"  [{', '.join(row.tags)}]" if row.tags else "")
         for row in rows
     )
+
+
+def _depth(summary: "SessionSummary | None") -> str:
+    return "-" if summary is None or summary.depth is None else f"{summary.depth:.2f} m"
 
 
 def _describe(session: "SessionDetail") -> str:
@@ -176,6 +192,8 @@ def _describe(session: "SessionDetail") -> str:
         *([session.note] if session.note else []),
         f"{session.state}, {session.origin}, {session.started:%Y-%m-%d %H:%M:%S} UTC, "
         f"{session.duration:.1f} s, {session.bytes} bytes",
+        f"greatest depth: {_depth(session.summary)}, "
+        f"controllers: {', '.join(session.summary.controllers if session.summary else ()) or '-'}",
         f"tags: {', '.join(session.tags) or '-'}",
         f"robot {session.robot}, version {session.version}, firmware {session.firmware or '-'}, "
         f"software {session.software or '-'}",

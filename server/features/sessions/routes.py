@@ -1,9 +1,11 @@
 """Sessions: search, description, replay, and the storage that they take."""
 
 from typing import Annotated
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from fastapi import Depends, Query, Request
 from fastapi.responses import Response
+from pydantic import Field
 
 from robot_runtime.contract.topics import THUMBNAIL
 from server.http.dependencies import Provided
@@ -12,13 +14,14 @@ from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 from server.library.catalogue import Catalogue
 from server.library.content import Recording, reading_content
-from server.library.listing import PAGE, PAGE_MAX
+from server.library.listing import PAGE, PAGE_MAX, Grouping, SessionSelection
 from server.library.missions import RecordedMission, read_missions
 from server.library.replay import HISTORY_MAX, read_blocks_between
 from server.library.retention import RetentionWorker
 from server.library.schemas import (
     SessionChanges,
     SessionDetail,
+    SessionGroup,
 )
 from server.library.storage import Storage, measure
 from server.library.timeline import Timeline, read_timeline
@@ -26,7 +29,7 @@ from server.platform.errors import ConflictError, InvalidError, NotFoundError
 from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.recording.schemas import Origin, Session, State
+from server.recording.schemas import Session
 from server.recording.session import UnknownSessionError, find_row
 
 SECONDS_MAX = 1e9
@@ -48,44 +51,70 @@ OpenRecording = Annotated[Recording, Depends(_open)]
 """The recording of the session in the path, also from the bin."""
 
 
+class ListQuery(SessionSelection):
+    """A part of the list of sessions."""
+
+    by: Grouping = "none"
+    before: Annotated[
+        int | None, Field(ge=1, le=IDENTIFIER_MAX, description="only sessions of lower numbers")
+    ] = None
+    skip: Annotated[
+        int, Field(ge=0, le=IDENTIFIER_MAX, description="sessions that are left out before the answer")
+    ] = 0
+    limit: Annotated[int, Field(ge=1, le=PAGE_MAX, description="sessions in the answer")] = PAGE
+
+
+class GroupsQuery(SessionSelection):
+    """Groups of sessions."""
+
+    by: Grouping
+    zone: Annotated[str, Field(max_length=60, description="whose days, such as Europe/Tallinn")] = "UTC"
+
+
 @router.operation("GET /sessions", Need.VIEWER)
 def list_sessions(
     catalogue: Provided[Catalogue],
     request: Request,
     response: Response,
-    search: Annotated[
-        str, Query(max_length=200, description="words that name, notes, tags or scenario have")
-    ] = "",
-    tag: Annotated[list[str] | None, Query(description="tags that they have, all of them")] = None,
-    origin: Origin | None = None,
-    state: State | None = None,
-    scenario: Annotated[str, Query(max_length=200, description="name of the scenario that they ran")] = "",
-    deleted: Annotated[bool, Query(description="those in the bin instead")] = False,
-    before: Annotated[
-        int | None, Query(ge=1, le=IDENTIFIER_MAX, description="only sessions of lower numbers")
-    ] = None,
-    limit: Annotated[int, Query(ge=1, le=PAGE_MAX, description="sessions in the answer")] = PAGE,
+    query: Annotated[ListQuery, Query()],
 ) -> list[Session]:
     """List the sessions that match every given condition, newest first, a page at a time.
 
-    The header `Total-Count` counts all matches. Where more follow, the header `Link` has the next page's
-    address (`rel="next"`): the same with `before` as the last number of this one.
+    Grouped `by` something, the groups follow each other, those without it last. The header `Total-Count`
+    counts all matches. Where more follow, the header `Link` has the next page's address (`rel="next"`).
     """
-    page = catalogue.page(
-        search,
-        tag or (),
-        origin,
-        state=state,
-        scenario=scenario,
-        deleted=deleted,
-        before=before,
-        limit=limit,
-    )
+    page = catalogue.page(query, by=query.by, before=query.before, skip=query.skip, limit=query.limit)
     response.headers[TOTAL_COUNT] = str(page.total)
     if page.following is not None:
-        following = request.url.include_query_params(before=page.following)
+        # New sessions move the others down, so that a list by numbers goes on by numbers.
+        step = (
+            {"before": page.following} if query.by in ("none", "day") else {"skip": query.skip + query.limit}
+        )
+        following = request.url.include_query_params(**step)
+        if "before" in step:
+            following = following.remove_query_params("skip")
         response.headers["Link"] = f'<{following.path}?{following.query}>; rel="next"'
     return page.sessions
+
+
+@router.operation("GET /sessions/groups", Need.VIEWER)
+def list_session_groups(
+    catalogue: Provided[Catalogue], query: Annotated[GroupsQuery, Query()]
+) -> list[SessionGroup]:
+    """List the groups of the sessions that match, in the order of the list."""
+    try:
+        zone = ZoneInfo(query.zone)
+    except (ZoneInfoNotFoundError, ValueError, OSError) as problem:
+        raise InvalidError(
+            f"This computer knows no time zone “{query.zone}”. Name one such as Europe/Tallinn, or UTC."
+        ) from problem
+    return catalogue.groups(query, query.by, zone)
+
+
+@router.operation("GET /sessions/controllers", Need.VIEWER)
+def list_session_controllers(catalogue: Provided[Catalogue]) -> list[str]:
+    """List the titles of the controllers that held the depth in some session; at most a hundred."""
+    return catalogue.controllers()
 
 
 @router.operation("GET /tags", Need.VIEWER)

@@ -13,6 +13,7 @@ from server.analysis.schemas import SESSIONS_MAX
 from server.analysis.segment_figures import SEGMENTS_MAX
 from server.analysis.story import COLUMNS
 from server.analysis.study import FREQUENCIES_MAX, PAIRS_MAX, SPECTRA_MAX
+from server.analysis.summary import NAMES_MAX
 from server.analysis.track import POINTS_MAX, TRACKS_MAX
 from server.app import create_app
 from server.driving.changes import SHOWN
@@ -34,11 +35,12 @@ from server.features.tuning.runs import LISTED_MOST as RUNS_LISTED
 from server.http.sign_in.devices import DEVICES_MAX, LINKS_MAX
 from server.library.crafts import CRAFTS_MAX
 from server.library.film import SPANS_SHOWN
-from server.library.listing import COLUMNS_SHOWN, PAGE_MAX, TAGS_SHOWN
+from server.library.listing import COLUMNS_SHOWN, GROUPS_MAX, PAGE_MAX, TAGS_SHOWN
 from server.library.missions import MISSIONS_SHOWN
 from server.library.schemas import SHOWN_MAX
 from server.library.snapshots import SNAPSHOTS_SHOWN
 from server.platform.settings import Settings
+from server.recording.schemas import CURVE_POINTS
 
 LIMITS = {
     "/api/access/devices": DEVICES_MAX,
@@ -68,7 +70,17 @@ LIMITS = {
     "/api/scenarios/state active events": SCENARIO_EVENTS_MAX,
     "/api/scenarios/state queued": QUEUE_MAX,
     "/api/sessions": PAGE_MAX,
+    "/api/sessions summary cards": NAMES_MAX,
+    "/api/sessions summary controllers": NAMES_MAX,
+    "/api/sessions summary curve": CURVE_POINTS,
+    "/api/sessions summary modes": NAMES_MAX,
     "/api/sessions tags": TAGS_MAX,
+    "/api/sessions/controllers": TAGS_SHOWN,
+    "/api/sessions/groups": GROUPS_MAX,
+    "/api/sessions/{session} summary cards": NAMES_MAX,
+    "/api/sessions/{session} summary controllers": NAMES_MAX,
+    "/api/sessions/{session} summary curve": CURVE_POINTS,
+    "/api/sessions/{session} summary modes": NAMES_MAX,
     "/api/sessions/{session} crafts": CRAFTS_MAX,
     "/api/sessions/{session} gaps": SHOWN_MAX,
     "/api/sessions/{session}/film spans": SPANS_SHOWN,

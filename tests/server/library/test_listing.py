@@ -3,6 +3,7 @@
 import asyncio
 import json
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta, timezone
 from typing import Any
 
 import pytest
@@ -12,11 +13,18 @@ from sqlmodel import SQLModel, col
 from robot_runtime.clock import SimulatedClock
 from server.library.bookmarks import Bookmarks
 from server.library.content import Recording
-from server.library.listing import COLUMNS_SHOWN, TAGS_SHOWN, Listing
+from server.library.listing import (
+    COLUMNS_SHOWN,
+    TAGS_SHOWN,
+    Grouping,
+    Listing,
+    SessionPage,
+    SessionSelection,
+)
 from server.library.replay import read_blocks_between
 from server.library.schemas import SHOWN_MAX
 from server.library.timeline import read_timeline
-from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -69,7 +77,84 @@ def test_pages_follow_each_other_and_count_all(store: Store) -> None:
         if before is None:
             break
     assert results == [[7, 6, 5], [4, 3, 2], [1]]
-    assert [len(part) for part in listing.pages("dive")] == [7]
+    assert [len(part) for part in listing.pages(SessionSelection(search="dive"))] == [7]
+
+
+def summary(number: int, **values: Any) -> dict[str, Any]:
+    """Return the columns of a summary."""
+    empty: dict[str, Any] = {
+        "depth": None,
+        "armed": 0,
+        "controllers": [],
+        "modes": [],
+        "cards": [],
+        "mission": "",
+        "alarms": 0,
+    }
+    empty |= {"curve": [], "face": None, "damaged": False}
+    return {"session_id": number, "document": json.dumps(empty | values)}
+
+
+def numbers(page: SessionPage) -> list[int]:
+    """Return the numbers of a page's sessions."""
+    return [entry.id for entry in page.sessions]
+
+
+def test_the_list_is_narrowed_by_what_the_summaries_say(store: Store) -> None:
+    add(store, SessionRow, session(1), session(2, kept=True, origin="arming"), session(3, started=1.9e9))
+    add(store, SummaryRow, summary(1, controllers=["PID", "Bang-bang"]), summary(2, controllers=["PID"]))
+    chunk = {"session_id": 3, "topic": "film", "number": 0, "first_time": 0.0, "last_time": 1.0, "first": 0}
+    add(store, Chunk, chunk | {"count": 1, "encoding": "", "data": b"", "run": ""})
+    listing = Listing(store)
+
+    def choose(**conditions: Any) -> list[int]:
+        return numbers(listing.page(SessionSelection(**conditions)))
+
+    assert [choose(controller=title) for title in ("PID", "Bang-bang", "B")] == [[2, 1], [1], []]
+    assert [choose(kept=True), choose(film=True), choose(origin="arming")] == [[2], [3], [2]]
+    moment = datetime.fromtimestamp(1.85e9, UTC)
+    assert (choose(since=moment), choose(until=moment)) == ([3], [2, 1])
+    assert listing.controllers() == ["Bang-bang", "PID"]
+    assert [entry.film for entry in listing.page().sessions] == [True, False, False]
+    assert listing.find(2).summary is not None
+    assert listing.find(3).summary is None
+
+
+def test_groups_follow_each_other_as_the_list_does(store: Store) -> None:
+    names = ["", "b", "a", "b"]
+    rows = [session(n, scenario_name=name, started=1.8e9 + n * 7200) for n, name in enumerate(names, 1)]
+    add(store, SessionRow, *rows)
+    add(store, SummaryRow, summary(2, mission="square"))
+    listing = Listing(store)
+
+    def groups(by: Grouping, **options: Any) -> list[tuple[str, int]]:
+        named = listing.groups(SessionSelection(), by, **options)
+        return [(group.name, group.count) for group in named]
+
+    assert groups("scenario") == [("a", 1), ("b", 2), ("", 1)]
+    assert numbers(listing.page(by="scenario")) == [3, 4, 2, 1]
+    assert numbers(listing.page(by="scenario", skip=1, limit=2)) == [4, 2]
+    assert groups("mission") == [("square", 1), ("", 3)]
+    assert groups("none") == [("", 4)]
+    # 1.8e9 is 08:00 UTC on 15 January 2027.
+    assert groups("day") == [("2027-01-15", 4)]
+    assert groups("day", zone=timezone(timedelta(hours=12))) == [("2027-01-16", 3), ("2027-01-15", 1)]
+
+
+async def test_pages_of_a_grouped_list_follow_each_other_over_http(served: Served) -> None:
+    store = served.get(Store)
+    rows = [session(number, scenario_name=str(number % 2)) for number in range(1, 6)]
+    await store.write(lambda connection: connection.execute(insert(SessionRow), rows))
+    listed, address = [], "/api/sessions?by=scenario&limit=2"
+    while address:
+        answer = await served.api.get(address.removeprefix("/api"))
+        listed += [entry["id"] for entry in answer.json()]
+        address = answer.links.get("next", {}).get("url", "")
+    assert listed == [4, 2, 5, 3, 1]
+    groups = await served.api.get("/sessions/groups", params={"by": "scenario"})
+    assert groups.json() == [{"name": "0", "count": 2}, {"name": "1", "count": 3}]
+    nonsense = await served.api.get("/sessions/groups", params={"by": "day", "zone": "../etc/passwd"})
+    assert (nonsense.status_code, "knows no time zone" in nonsense.json()["detail"]) == (422, True)
 
 
 def test_a_page_is_filled_with_sessions_that_match(store: Store) -> None:
@@ -77,11 +162,11 @@ def test_a_page_is_filled_with_sessions_that_match(store: Store) -> None:
     add(store, SessionRow, *rows)
     add(store, SessionTag, {"session_id": 1, "tag": "Übung"}, {"session_id": 2, "tag": "sea"})
     listing = Listing(store)
-    page = listing.page("ärger", limit=2)
+    page = listing.page(SessionSelection(search="ärger"), limit=2)
     assert ([entry.id for entry in page.sessions], page.total, page.following) == ([9, 6], 3, 6)
-    assert [entry.id for entry in listing.page("übung").sessions] == [1]
-    assert [entry.tags for entry in listing.page(tags=["ÜBUNG"]).sessions] == [["Übung"]]
-    assert listing.page("100%").sessions == []
+    assert [entry.id for entry in listing.page(SessionSelection(search="übung")).sessions] == [1]
+    assert [entry.tags for entry in listing.page(SessionSelection(tag=["ÜBUNG"])).sessions] == [["Übung"]]
+    assert listing.page(SessionSelection(search="100%")).sessions == []
 
 
 def test_tags_in_use_are_listed_up_to_a_number(store: Store) -> None:

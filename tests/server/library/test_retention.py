@@ -16,6 +16,7 @@ from robot_runtime.transport.blocks import Block
 from server.library.catalogue import Catalogue
 from server.library.config import SessionsConfig
 from server.library.content import Recording
+from server.library.listing import SessionSelection
 from server.library.retention import BIN_SECONDS, RetentionWorker
 from server.platform.models import Chunk, Gap, SessionRow
 from server.platform.notices import Notices
@@ -69,7 +70,7 @@ class Keeper:
         await self.store.write(lambda connection: connection.exec_driver_sql(statement))
 
     def names(self, *, deleted: bool = False) -> list[str]:
-        return [session.name for session in self.catalogue.page(deleted=deleted).sessions]
+        return [session.name for session in self.catalogue.page(SessionSelection(deleted=deleted)).sessions]
 
     def gaps(self) -> list[tuple[int, str, str, int]]:
         query = select(Gap.session_id, Gap.topic, Gap.kind, Gap.missed).where(Gap.kind == "removed")
