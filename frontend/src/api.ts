@@ -12,6 +12,8 @@ export type Scope = NonNullable<schemas.NewToken['scope']>;
 export type SessionTexts = Partial<Pick<schemas.Session, 'name' | 'note' | 'tags'>>;
 export type SessionEdit = SessionTexts & Partial<Pick<schemas.Session, 'kept'>>;
 export type SessionQuery = NonNullable<operations['listSessions']['parameters']['query']>;
+type SessionGroupsQuery = operations['listSessionGroups']['parameters']['query'];
+export type SessionGrouping = NonNullable<SessionQuery['by']>;
 type AuditQuery = NonNullable<operations['listAudit']['parameters']['query']>;
 type ReportQuery = operations['getComparisonReport']['parameters']['query'];
 export type ExportFormat = schemas.ExportOptions['format'];
@@ -144,6 +146,8 @@ export const api = {
   sessions: (query: SessionQuery = {}) =>
     askFor(server.GET('/api/sessions', { params: { query } }), (sessions, { headers }) => ({ sessions, total: Number(headers.get('Total-Count')) })),
   tags: () => ask(server.GET('/api/tags')),
+  sessionGroups: (query: SessionGroupsQuery) => ask(server.GET('/api/sessions/groups', { params: { query } })),
+  sessionControllers: () => ask(server.GET('/api/sessions/controllers')),
   session: (session: number) => ask(server.GET('/api/sessions/{session}', { params: { path: { session } } })),
   /** `base` has the texts that the editing began from; with null, whatever they are by now is replaced */
   changeSession: (session: number, changes: SessionEdit, base: SessionTexts | null) =>

@@ -3,6 +3,8 @@
 const MINUS = '\u2212';
 const FIGURE_SPACE = '\u2007';
 export const MISSING = '\u2013';
+/** Made once: that takes longer than all that a row of a list needs else. */
+const DAY = new Intl.DateTimeFormat(undefined, { year: 'numeric', month: 'short', day: 'numeric' });
 
 /** `value` with a fixed number of decimals; a true minus sign, and in its place a space of a digit's width. */
 export function fixed(value: number | null | undefined, decimals: number, sign: 'none' | 'space' = 'none'): string {
@@ -60,8 +62,12 @@ export function timeOfDay(date: Date, tenths = false): string {
 /** Local date and time of day; the zone has to be named beside it. */
 export function dateTime(at: Date | string): string {
   const date = new Date(at);
-  const day = date.toLocaleDateString(undefined, { year: 'numeric', month: 'short', day: 'numeric' });
-  return `${day}, ${timeOfDay(date)}`;
+  return `${DAY.format(date)}, ${timeOfDay(date)}`;
+}
+
+/** A day such as 2026-05-31 in words, in the browser's language. */
+export function dayName(day: string): string {
+  return new Date(`${day}T12:00`).toLocaleDateString(undefined, { weekday: 'long', year: 'numeric', month: 'long', day: 'numeric' });
 }
 
 /** Local date and time of day with the zone's offset, which may be another in summer. */

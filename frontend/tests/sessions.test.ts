@@ -2,8 +2,10 @@ import { describe, expect, it } from 'vitest';
 import type { SessionDetail } from '../src/api';
 import { alike, findTooLong, orderProblem, SHEET_LINES } from '../src/pages/sessions/export/formats';
 import { asked, frames } from '../src/pages/sessions/film';
-import { withTags } from '../src/pages/sessions/find';
+import { depthPath } from '../src/pages/sessions/depthPath';
+import { narrows, NO_FILTERS, queryOf, readFilters, withTags, writeFilters } from '../src/pages/sessions/find';
 import { compareLink, replayLink } from '../src/pages/sessions/links';
+import { heightOf, rowAt, rowsBetween } from '../src/pages/sessions/placing';
 import { gapWords } from '../src/pages/sessions/words';
 
 describe('tags', () => {
@@ -68,5 +70,70 @@ describe('findTooLong', () => {
     expect(findTooLong([imu], 100, 50.1, null)).toBeNull();
     expect(findTooLong([imu], 100, -10, 40)).toBeNull();
     expect(findTooLong([imu], 100, 20, 1000)).toEqual({ name: 'imu', lines: Math.ceil(2 * SHEET_LINES * 0.8) + 1 });
+  });
+});
+
+describe('a long list', () => {
+  const groups = [
+    { name: 'a', count: 2 },
+    { name: 'b', count: 3 },
+  ];
+  const heights = { row: 10, heading: 4 };
+
+  it('draws the rows in view, a heading with the first of its group', () => {
+    expect(heightOf(groups, heights)).toBe(58);
+    expect(rowsBetween(groups, heights, 0, 58).map(({ index, top, height, group }) => [index, top, height, group?.name])).toEqual([
+      [0, 0, 14, 'a'],
+      [1, 14, 10, undefined],
+      [2, 24, 14, 'b'],
+      [3, 38, 10, undefined],
+      [4, 48, 10, undefined],
+    ]);
+    expect(rowsBetween(groups, heights, 15, 23).map(({ index }) => index)).toEqual([1]);
+    // The heading alone is in view.
+    expect(rowsBetween(groups, heights, 25, 26).map(({ index }) => index)).toEqual([2]);
+    expect(rowsBetween(groups, heights, 1000, 2000)).toEqual([]);
+    expect(rowsBetween([], heights, 0, 10)).toEqual([]);
+  });
+
+  it('finds a row wherever it stands', () => {
+    for (const row of rowsBetween(groups, heights, 0, 58)) expect(rowAt(groups, heights, row.index)).toEqual(row);
+    expect(rowAt(groups, heights, 5)).toBeNull();
+    expect(rowsBetween([{ name: '', count: 10_000 }], { row: 88, heading: 0 }, 440_000, 440_900).map(({ index }) => index)).toEqual(
+      [5000, 5001, 5002, 5003, 5004, 5005, 5006, 5007, 5008, 5009, 5010],
+    );
+  });
+});
+
+describe('filters in the address', () => {
+  const filters = { ...NO_FILTERS, search: ' deep ', tags: ['pool', 'sea'], origin: 'arming', film: true, since: '2026-05-30', until: '2026-05-31', by: 'day' } as const;
+
+  it('come back as they were', () => {
+    const written = Object.entries(writeFilters(filters)).flatMap(([name, value]) => (value === null ? [] : [[name, value] as const]));
+    expect(readFilters(new Map(written))).toEqual(filters);
+    expect(Object.values(writeFilters(NO_FILTERS)).every((value) => value === null)).toBe(true);
+    expect([narrows(NO_FILTERS), narrows({ ...NO_FILTERS, by: 'day', search: ' ' }), narrows(filters)]).toEqual([false, false, true]);
+  });
+
+  it('are whole local days for the server', () => {
+    const { since, until, search, tag, kept } = queryOf(filters);
+    expect([since, until]).toEqual([new Date(2026, 4, 30).toISOString(), new Date(2026, 5, 1).toISOString()]);
+    expect([search, tag, kept]).toEqual(['deep', ['pool', 'sea'], undefined]);
+  });
+
+  it('that are nonsense count as none', () => {
+    const seen = new Map(Object.entries({ origin: '<b>', film: 'yes', since: '2026-02-31', until: 'x', by: 'constructor', tag: ',,' }));
+    expect(readFilters(seen)).toEqual(NO_FILTERS);
+    expect(readFilters(new Map([['search', 'x'.repeat(1_000_000)]])).search).toHaveLength(200);
+  });
+});
+
+describe('a small curve', () => {
+  it('has the surface on top, and leaves out what nobody measured', () => {
+    expect(depthPath([])).toBeNull();
+    expect(depthPath([null, null])).toBeNull();
+    expect(depthPath([0, null, 1])).toEqual({ line: 'M0.0 2.0L100.0 38.0', area: 'M0.0 2.0L100.0 38.0L100.0 2L0.0 2Z' });
+    // A robot that floats draws no mountains.
+    expect(depthPath([0.003, -0.01])?.line).toBe('M0.0 2.4L100.0 2.0');
   });
 });

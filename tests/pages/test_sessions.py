@@ -42,16 +42,16 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
     expect(page.get_by_role("list", name="Tags")).to_contain_text("pool")
 
     page.get_by_role("link", name="All sessions").click()
-    element = page.get_by_role("region", name="Recorded").get_by_role("row")
+    element = page.get_by_role("list", name="Recorded sessions").get_by_role("listitem")
     page.get_by_label("Search sessions").fill("north hover")
-    expect(element).to_have_count(2)
-    expect(element.nth(1)).to_contain_text("hover in a current")
-    expect(element.first.get_by_role("columnheader", name=re.compile("^Started, [A-Z]"))).to_be_visible()
+    expect(element).to_have_count(1)
+    expect(element).to_contain_text("hover in a current")
+    expect(page.get_by_text(re.compile("^Times in UTC"))).to_be_visible()
     page.get_by_label("Search sessions").fill("nothing is like this")
     expect(page.get_by_text("No matching sessions")).to_be_visible()
     page.get_by_role("button", name=re.compile("^Show all")).click()
     page.get_by_role("button", name="pool", exact=True).click()
-    expect(element).to_have_count(2)
+    expect(element).to_have_count(1)
 
     page.get_by_role("button", name="Delete hover in a current").click()
     expect(page.get_by_text("Deleted “hover in a current”")).to_be_visible()
@@ -60,6 +60,59 @@ def test_a_session_is_recorded_and_found_again(page: Page, site: Site) -> None:
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_role("link", name="hover in a current", exact=True)).to_be_visible()
     expect(page.get_by_role("region", name="Bin")).to_be_hidden()
+
+
+def test_several_sessions_are_tagged_kept_exported_and_deleted_and_come_back(page: Page, site: Site) -> None:
+    for name in ("first of many", "second of many", "<b>third</b> of many"):
+        site.api.post("/sessions", json={"name": name}).raise_for_status()
+        site.api.post(f"/sessions/{newest(site)}/stop").raise_for_status()
+    third = newest(site)
+    page.goto(f"{site.url}/#/sessions?search=of+many&by=day")
+    rows = page.get_by_role("list", name="Recorded sessions").get_by_role("listitem")
+    expect(rows).to_have_count(3)
+    expect(rows.first.get_by_role("heading")).to_be_visible()
+
+    # In place, by keyboard alone: Esc would be STOP.
+    page.get_by_role("button", name="Rename <b>third</b> of many").press("Enter")
+    page.get_by_label("Name", exact=True).last.fill("third <i>of many</i>")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("link", name="third <i>of many</i>", exact=True)).to_be_visible()
+    assert site.api.get(f"/sessions/{third}").json()["name"] == "third <i>of many</i>"
+    page.get_by_role("link", name="third <i>of many</i>", exact=True).focus()
+    page.keyboard.press("ArrowDown")
+    expect(page.get_by_role("link", name="second of many", exact=True)).to_be_focused()
+    page.keyboard.press("End")
+    expect(page.get_by_role("link", name="first of many", exact=True)).to_be_focused()
+
+    for name in ("first of many", "second of many"):
+        page.get_by_label(f"Select {name}").check()
+    bar = page.get_by_role("group", name="Selected sessions")
+    expect(bar.get_by_role("link", name="Compare 2")).to_be_visible()
+    bar.get_by_role("button", name="Tag…").click()
+    bar.get_by_label("New tag").fill("together")
+    page.keyboard.press("Enter")
+    bar.get_by_role("button", name="Keep").click()
+    expect(bar.get_by_role("button", name="Do not keep")).to_be_visible()
+    bar.get_by_role("button", name="Export…").click()
+    bar.get_by_role("button", name="Create file").click()
+    expect(bar.get_by_text("2 files are being made")).to_be_visible()
+    page.get_by_role("button", name="Kept", exact=True).click()
+    expect(rows).to_have_count(2)
+    assert all(
+        (session["kept"], session["tags"]) == (True, ["together"])
+        for session in site.api.get("/sessions", params={"search": "of many", "kept": True}).json()
+    )
+    # The page's address is the view.
+    page.reload()
+    expect(rows).to_have_count(2)
+
+    for name in ("first of many", "second of many"):
+        page.get_by_label(f"Select {name}").check()
+    bar.get_by_role("button", name="Delete").click()
+    expect(page.get_by_text("Deleted 2 sessions")).to_be_visible()
+    expect(rows).to_have_count(0)
+    page.get_by_role("button", name="Undo").click()
+    expect(rows).to_have_count(2)
 
 
 def test_a_session_shows_the_craft_that_swam(page: Page, site: Site) -> None:
