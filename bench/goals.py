@@ -146,6 +146,8 @@ GOALS = {
     "identify.prediction_gain_min": _least(5),
     "link.table6_min_success": _least(1.0),
     "link.undetected_corruptions": _most(0),
+    "list.frame_ms_max": _most(50, "drawing"),
+    "list.open_ms": _most(500),
     # A Raspberry Pi Zero takes some thirty times as long: 4 % of it at 10 Hz, and 2 s for the first load.
     "mission.tick_us": _most(0.04 / 10 / 30 * 1e6, "python"),
     "mission.load_ms": _most(2000 / 30, "python"),

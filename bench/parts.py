@@ -60,5 +60,6 @@ PARTS = {
         BenchPart("doors"),
         BenchPart("flight", draws=True),
         BenchPart("page", draws=True),
+        BenchPart("session_list", draws=True),
     )
 }
