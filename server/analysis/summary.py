@@ -108,7 +108,7 @@ def _controller(state: Mapping[str, Any]) -> str:
     if state.get("mode") != "automatic" and not loop.get("on"):
         return ""
     name = loop.get("controller", "")
-    titles = {one.get("name"): one.get("title") for one in loop.get("controllers", ())}
+    titles = {known.get("name"): known.get("title") for known in loop.get("controllers", ())}
     return str(titles.get(name) or name)
 
 

@@ -30,6 +30,7 @@ UNCHANGING = frozenset(
         "compareSessions",
         "compareLines",
         "pickColour",
+        "predictStep",
         "readVision",
         "refuseCommand",
     }

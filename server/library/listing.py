@@ -162,11 +162,11 @@ class Listing:
             labels = [row[0] for row in database.connection().execute(query)]
         if by == "day":
             labels = [f"{datetime.fromtimestamp(started, zone):%Y-%m-%d}" for started in labels]
-        found = [SessionGroup(name=name, count=len(list(some))) for name, some in groupby(labels)]
-        rest = found[GROUPS_MAX:]
+        groups = [SessionGroup(name=name, count=len(list(some))) for name, some in groupby(labels)]
+        rest = groups[GROUPS_MAX:]
         if rest:
-            found[GROUPS_MAX - 1].count += sum(group.count for group in rest)
-        return found[:GROUPS_MAX]
+            groups[GROUPS_MAX - 1].count += sum(group.count for group in rest)
+        return groups[:GROUPS_MAX]
 
     def controllers(self) -> list[str]:
         """Return the controllers that sessions outside the bin used, in alphabetical order; at most

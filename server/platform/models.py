@@ -63,7 +63,7 @@ class SessionTag(SQLModel, table=True):
 
 
 class SummaryRow(SQLModel, table=True):
-    """What the list says about a session that has ended: a `SessionSummary` as JSON.
+    """The summary of a session that has ended, for the list: a `SessionSummary` as JSON.
 
     It follows from the samples, and is computed again where it is missing.
     """

@@ -15,7 +15,7 @@ CURVE_POINTS = 60
 
 
 class SessionSummary(BaseModel):
-    """What the list says about a session that has ended. What its samples do not say is null or empty."""
+    """The summary of an ended session, for the list. Values that its samples lack are null or empty."""
 
     depth: float | None = Field(description="m, the greatest")
     armed: float = Field(description="s, all armed times together")

@@ -26,6 +26,7 @@ STORED_NAMES = frozenset(
         ("robot_runtime/contract/packets/definitions.py", "wanted"),
         ("server/features/exports/schemas.py", "wanted"),
         ("server/library/catalogue.py", "kept"),
+        ("server/library/listing.py", "kept"),
         ("server/library/schemas.py", "kept"),
         ("server/recording/schemas.py", "kept"),
         ("server/platform/models.py", "kept"),

@@ -2553,7 +2553,7 @@ export interface components {
                 [key: string]: components["schemas"]["SignalLine"];
             };
         };
-        /** @description What the list says about a session that has ended. What its samples do not say is null or empty. */
+        /** @description The summary of an ended session, for the list. Values that its samples lack are null or empty. */
         SessionSummary: {
             /** @description number of alarms that began */
             alarms: number;

@@ -1,4 +1,4 @@
-"""What the list says about a session, and the name that it gets from it."""
+"""Summaries of sessions, and the names that they get from them."""
 
 import asyncio
 

@@ -24,6 +24,7 @@ from server.features.exports.archive_models import COLUMNS_MAX, TAGS_MAX, TOPICS
 from server.features.exports.jobs import JOBS_MAX
 from server.features.layouts.library import LAYOUTS_MOST
 from server.features.missions.library import MISSIONS_MAX, VERSIONS_MAX
+from server.features.missions.past_runs import RUNS_MAX
 from server.features.missions.schemas import SEEDS_MAX
 from server.features.panels.scripts import PANELS_SHOWN
 from server.features.parameters.profiles import PROFILES_MAX
@@ -70,10 +71,12 @@ LIMITS = {
     "/api/scenarios/state active events": SCENARIO_EVENTS_MAX,
     "/api/scenarios/state queued": QUEUE_MAX,
     "/api/sessions": PAGE_MAX,
+    "/api/missions/runs/{name}": RUNS_MAX,
     "/api/missions/runs/{name} session summary cards": NAMES_MAX,
     "/api/missions/runs/{name} session summary controllers": NAMES_MAX,
     "/api/missions/runs/{name} session summary curve": CURVE_POINTS,
     "/api/missions/runs/{name} session summary modes": NAMES_MAX,
+    "/api/missions/runs/{name} session tags": TAGS_MAX,
     "/api/sessions summary cards": NAMES_MAX,
     "/api/sessions summary controllers": NAMES_MAX,
     "/api/sessions summary curve": CURVE_POINTS,
@@ -176,6 +179,9 @@ FIXED = {
     "/api/robot loops controllers gains",
     "/api/robot paces",
     "/api/robot refusals",
+    "/api/scenarios/events",
+    "/api/scenarios/events fields",
+    "/api/scenarios/events fields choices",
     "/api/sessions/{session}/readings fins",
     "/api/sessions/{session}/story segments gains",
     "/api/sessions/{session}/story/figures meanings",

@@ -62,7 +62,7 @@ def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -
         *("getComparisonReport", "compareSessions", "compareLines", "getBlocks"),
         *("getStory", "getStoryFigures", "getTrack", "getReadings", "getSpectrum", "getPair"),
         *("checkScenario", "checkMission", "readVision", "examineAgain"),
-        *("getSession", "getTimeline", "getThumbnail", "listSessionMissions"),
+        *("getSession", "getTimeline", "getThumbnail", "listSessionMissions", "listMissionRuns"),
         *("listSessionSnapshots", "getSnapshot"),
         *("getFilm", "getFilmPart"),
         "predictStep",
