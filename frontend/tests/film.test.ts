@@ -5,6 +5,15 @@ import { filmedMoment, isFilmed } from '../src/film/spans';
 const WHOLE = [{ start: 1, end: 100 }];
 
 describe('the next part of a film', () => {
+  it('brings the picture where the film stands, even the last of its span', () => {
+    const spans = [
+      { start: 1, end: 10 },
+      { start: 20, end: 30 },
+    ];
+    expect([10, 9.9, 30].map((at) => nextPart(at, [], spans)?.start)).toEqual([10, 9.9, 30]);
+    expect(nextPart(30, [{ start: 29, end: 30.07 }], spans)).toBeNull();
+  });
+
   it('begins short where the film stands, so that it comes soon', () => {
     expect(nextPart(20, [], WHOLE)).toEqual({ start: 20, seconds: 2 });
   });

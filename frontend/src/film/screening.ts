@@ -15,7 +15,9 @@ const NEAR = 0.2;
 export function nextPart(at: number, stored: readonly Span[], spans: readonly Span[]): { start: number; seconds: number } | null {
   let end = at;
   for (const one of stored) if (one.start - NEAR <= end && one.end > end) end = one.end;
-  const span = spans.find((one) => one.end > end + NEAR);
+  // Where it stands on a picture that is not in store, that one comes first, even the last of its span.
+  const here = end === at ? spans.find((one) => one.start <= at && at <= one.end) : undefined;
+  const span = here ?? spans.find((one) => one.end > end + NEAR);
   if (span === undefined) return null;
   const start = Math.max(end, span.start);
   return start - at > AHEAD ? null : { start, seconds: end === at ? FIRST : PART };
