@@ -8,3 +8,6 @@ export const snug = new MediaQuery('(max-width: 2199px)');
 
 /** Too narrow for the panels to stand side by side on one screen. */
 export const compact = new MediaQuery('(max-width: 1099px)');
+
+/** A phone that lies: what stands above and below leaves little between. */
+export const low = new MediaQuery('(max-height: 499px)');

@@ -140,7 +140,7 @@ const PLACES: Readonly<Record<string, readonly string[]>> = {
   ],
 };
 /** Amber as a mark in a drawing, a few pixels large, which nobody takes for a state. */
-const AMBER_MARKS = ['pages/replay/SeekBar.svelte', 'pages/missions/TrialResults.svelte'];
+const AMBER_MARKS = ['pages/replay/SeekBar.svelte', 'pages/replay/DepthSlider.svelte', 'pages/missions/TrialResults.svelte'];
 
 describe('one language of state', () => {
   const styled = files.filter((file) => /\.(css|svelte)$/.test(file));

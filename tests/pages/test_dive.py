@@ -92,6 +92,23 @@ def test_a_range_is_drawn_and_has_figures(page: Page, dives: DiveSite) -> None:
     expect(page.get_by_role("button", name="Zoom in")).to_be_hidden()
 
 
+def test_a_replay_is_sought_on_its_depth_profile(page: Page, dives: DiveSite) -> None:
+    page.goto(f"{dives.url}/#/replay/1")
+    slider = page.get_by_role("slider", name="Time since the start of the session")
+    expect(slider).to_have_attribute("aria-valuetext", "00:00, 0.00 m")
+    box = slider.bounding_box()
+    assert box is not None
+    slider.click(position={"x": box["width"] / 2, "y": 20})
+    expect(slider).to_have_attribute("aria-valuetext", "00:17, 1.00 m")
+    expect(page.get_by_label("Player").locator("strong")).to_have_text(re.compile(r"^00:17\.\d$"))
+    slider.press("ArrowLeft")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("^00:12, "))
+    card = page.get_by_label("Player").get_by_role("button", name="Yellow card")
+    expect(card).to_have_attribute("title", re.compile("^00:12 Yellow card"))
+    card.click()
+    expect(page).to_have_url(re.compile(r"#/replay/1\?at=12\.2$"))
+
+
 @pytest.mark.parametrize(
     ("address", "sentence"),
     [

@@ -28,6 +28,7 @@ export const replay = {
   },
   seek: {
     hole: 'No recording',
+    hint: (near: number, far: number) => `Arrow keys move by ${near} s, with shift by ${far} s. Press or drag to seek.`,
     position: 'Time since the start of the session',
     positionOf: (position: string, duration: string) => `${position} of ${duration}`,
     bookmark: (text: string) => `Bookmark ${text}`,
