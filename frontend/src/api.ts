@@ -187,6 +187,12 @@ export const api = {
       (blocks, response): Stretch => ({ blocks: bytes(blocks), leftOut: leftOut(response) }),
     ),
   signals: (session: number) => ask(server.GET('/api/sessions/{session}/signals', { params: { path: { session } } })),
+  /** of a part, s since the session's start, or of the whole session */
+  spectrum: (session: number, signal: string[], part: { start: number; end: number } | null) =>
+    ask(server.GET('/api/sessions/{session}/spectrum', { params: { path: { session }, query: { signal, ...(part && { from: part.start, to: part.end }) } }, fetch: within(TIMEOUT_COMPARE) })),
+  /** one signal against another, as `spectrum` */
+  pairSignals: (session: number, x: string, y: string, part: { start: number; end: number } | null) =>
+    ask(server.GET('/api/sessions/{session}/pair', { params: { path: { session }, query: { x, y, ...(part && { from: part.start, to: part.end }) } }, fetch: within(TIMEOUT_COMPARE) })),
   story: (session: number) => ask(server.GET('/api/sessions/{session}/story', { params: { path: { session } }, fetch: within(TIMEOUT_COMPARE) })),
   /** of the whole dive and its segments, or of a part alone, s since the session's start */
   storyFigures: (session: number, part: { start: number; end: number } | null) =>

@@ -109,6 +109,23 @@ def test_a_replay_is_sought_on_its_depth_profile(page: Page, dives: DiveSite) ->
     expect(page).to_have_url(re.compile(r"#/replay/1\?at=12\.2$"))
 
 
+def test_the_signals_of_a_session_are_studied(page: Page, dives: DiveSite) -> None:
+    page.goto(f"{dives.url}/#/sessions/1")
+    page.get_by_role("link", name="Study", exact=True).click()
+    expect(page.get_by_role("img", name="control, output against depth, depth (m)")).to_be_visible()
+    page.get_by_label("Across (x)").select_option("control.error")
+    expect(page.get_by_role("img", name="control, output against control, error (m)")).to_be_visible()
+    expect(page).to_have_url(re.compile(r"#/sessions/1/study\?x=control\.error$"))
+
+    page.goto(f"{dives.url}/#/sessions/1/study?signals=motor.angle_0&from=5&to=30")
+    expect(page.get_by_text(re.compile(r"strongest at 1\.2\d Hz, amplitude .* rad"))).to_be_visible()
+    expect(page.get_by_role("img", name="Power spectral density")).to_be_visible()
+    page.get_by_label("to", exact=True).fill("5.1")
+    page.keyboard.press("Enter")
+    expect(page.get_by_text("and a spectrum needs 32. Choose a longer range.")).to_be_visible()
+    expect(page).to_have_url(re.compile(r"to=5\.1"))
+
+
 @pytest.mark.parametrize(
     ("address", "sentence"),
     [
@@ -116,6 +133,8 @@ def test_a_replay_is_sought_on_its_depth_profile(page: Page, dives: DiveSite) ->
         ("1?at=1e9", "This address names a time that the session does not have (at=1e9)."),
         ("2", "The robot was never armed in this session: there are no segments."),
         ("3", "This session has no samples."),
+        ("3/study", "This session has no signals."),
+        ("1/study?x=no.such", "This session has no signal no.such. It is passed over."),
     ],
 )
 def test_what_cannot_be_shown_is_said(page: Page, dives: DiveSite, address: str, sentence: str) -> None:

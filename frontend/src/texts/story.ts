@@ -1,7 +1,7 @@
 /** Texts of the story of a dive. */
 
 export const story = {
-  tabs: { label: 'Views of the session', dive: 'Dive', data: 'Data' },
+  tabs: { label: 'Views of the session', dive: 'Dive', study: 'Study', data: 'Data' },
   profile: {
     title: 'Depth',
     label: 'Depth over time',

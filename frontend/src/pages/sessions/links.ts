@@ -1,8 +1,8 @@
 /** Addresses within the page. */
 
 export const OVERVIEW = '#/sessions';
-/** what a session's page shows: the dive, or its data */
-export const SESSION_VIEWS = ['dive', 'data'] as const;
+/** what a session's page shows: the dive, its signals, or its data */
+export const SESSION_VIEWS = ['dive', 'study', 'data'] as const;
 export type SessionView = (typeof SESSION_VIEWS)[number];
 export const sessionLink = (id: number, view: SessionView = 'dive'): string => `${OVERVIEW}/${id}${view === 'dive' ? '' : `/${view}`}`;
 export const compareLink = (ids: readonly number[]): string => `${OVERVIEW}/compare/${ids.join(',')}`;
