@@ -28,6 +28,8 @@ function session(id: number, offset: number | null, names: readonly string[]): C
     set_point_steps: 0,
     events: [],
     markers: [{ time: 3, kind: 'marker', severity: 'info', text: 'here' }],
+    segments: [],
+    segment: null,
     range: [],
     figures: {},
     series: Object.fromEntries(names.map((name) => [name, line])),
@@ -36,7 +38,7 @@ function session(id: number, offset: number | null, names: readonly string[]): C
 
 function comparison(names: readonly string[], sessions: Compared[]): Comparison {
   const align = { by: 'armed', number: 1, marker: '', step: '' } as const;
-  return { align, signals: names.map(signal), sessions, figures: [], differences: [] };
+  return { align, signals: names.map(signal), sessions, figures: [], likeness: { alike: true, why: '' }, differences: [] };
 }
 
 describe('charts', () => {

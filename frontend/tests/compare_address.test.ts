@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { MOST_SIGNALS, readAlign, readSignals, readView, rounded, writeAlign } from '../src/pages/sessions/compare/seen';
+import { MOST_SIGNALS, readAlign, readSegments, readSignals, readView, rounded, writeAlign, writeSegments } from '../src/pages/sessions/compare/seen';
 
 const START = { by: 'start', number: 1, marker: '', step: '' };
 
@@ -13,6 +13,7 @@ describe('the address of a comparison', () => {
   it('names what begins together, and reads what it has written', () => {
     for (const align of [
       { ...START, by: 'armed' },
+      { ...START, by: 'segment' },
       { ...START, by: 'set_point', number: 3 },
       { ...START, by: 'marker', marker: 'card: yellow, 2' },
       { ...START, by: 'marker' },
@@ -35,5 +36,17 @@ describe('the address of a comparison', () => {
     expect(readView(null, 20)).toBeNull();
     expect(readView(-1.5, 20)).toEqual({ start: -1.5, end: 20 });
     expect(rounded({ start: 1.23456, end: 2 })).toEqual({ start: 1.235, end: 2 });
+  });
+
+  it('names a segment of each session, and passes over what is none', () => {
+    const choices = [
+      { session: 7, segment: 2 },
+      { session: 9, segment: 1 },
+    ];
+    expect(readSegments('9:1,7:2,8:3', [7, 9])).toEqual(choices);
+    expect(readSegments(writeSegments(choices), [7, 9])).toEqual(choices);
+    expect(readSegments('7:2', [7, 9])).toEqual([choices[0]]);
+    for (const none of ['', 'like', '7', '7:', '7:0', '7:1.5', '7:201', '7:x', ':2', '7:NaN', '7:Infinity']) expect(readSegments(none, [7, 9])).toEqual([]);
+    expect(writeSegments([])).toBe('like');
   });
 });

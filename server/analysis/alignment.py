@@ -4,7 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from server.analysis.moments import ControlHistory
+from server.analysis.likeness import NO_SEGMENT
+from server.analysis.moments import ControlHistory, Span
 from server.http.request_body import RequestBody
 from server.library.bookmarks import name_note
 from server.library.missions import RecordedMission
@@ -14,7 +15,7 @@ from server.library.timeline import Moment
 class Align(RequestBody):
     """The moment that becomes 0 s in every session."""
 
-    by: Literal["start", "armed", "set_point", "marker", "mission"] = "start"
+    by: Literal["start", "armed", "set_point", "marker", "mission", "segment"] = "start"
     number: Annotated[int, Field(ge=1, le=1000, description="number of the set-point step")] = 1
     marker: Annotated[str, Field(max_length=500, description="its name; the first match counts")] = ""
     step: Annotated[
@@ -33,8 +34,16 @@ def find_moment(
     steps: list[tuple[float, float]],
     bookmarks: list[Moment],
     missions: list[RecordedMission],
+    segment: Span | None,
 ) -> float:
-    """Return the moment, s since the session's start. Raise NoMomentError if the session lacks it."""
+    """Return the moment, s since the session's start; `segment` is the chosen one.
+
+    Raise NoMomentError if the session lacks it.
+    """
+    if align.by == "segment":
+        if segment is None:
+            raise NoMomentError(NO_SEGMENT)
+        return segment.start
     if align.by == "armed":
         if not history.armed:
             raise NoMomentError("The robot was never armed in this session.")

@@ -2,24 +2,21 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 
-from server.analysis.alignment import NoMomentError, find_moment
+from server.analysis.aligner import AlignedSession, Aligner
 from server.analysis.decimation import decimate
 from server.analysis.definitions import FIGURES
 from server.analysis.differences import find_differences
 from server.analysis.figures import (
-    MEASURED,
     NEVER_ARMED,
     NOTHING_THERE,
-    OUTPUT,
-    SET_POINT,
     EvaluationRange,
     complete,
     count,
     measure,
 )
-from server.analysis.history import read_bookmarks, read_history, set_point_steps
+from server.analysis.history import read_history
+from server.analysis.likeness import NO_SEGMENT, judge, parts_within
 from server.analysis.moments import ControlHistory, Span
 from server.analysis.result_cache import ResultCache
 from server.analysis.samples import Samples
@@ -37,10 +34,9 @@ from server.analysis.signals import Signal, list_signals, split
 from server.analysis.story import StoryTeller
 from server.analysis.study import Study
 from server.library.content import Recording, reading_content
-from server.library.missions import MissionStepStart, RecordedMission, read_missions
-from server.library.timeline import Moment, read_events
+from server.library.missions import MissionStepStart, RecordedMission
+from server.library.timeline import read_events
 from server.metrics.figure import Figure
-from server.platform.models import SessionRow
 from server.platform.store import Reader
 from server.recording.session import find_row
 
@@ -49,23 +45,6 @@ RESULTS_MAX = 64
 """Of each cache of results about a session."""
 THREADS = 2
 """Only decompression and SQLite run in parallel: more threads do not help."""
-
-
-@dataclass(frozen=True, slots=True)
-class _AlignedSession:
-    """A session and its position on the common time axis."""
-
-    recording: Recording
-    history: ControlHistory
-    steps: list[tuple[float, float]]
-    markers: list[Moment]
-    missions: list[RecordedMission]
-    offset: float | None
-    problem: str
-
-    @property
-    def row(self) -> SessionRow:
-        return self.recording.row
 
 
 class Comparer:
@@ -79,9 +58,9 @@ class Comparer:
         self._samples = Samples()
         self._threads = ThreadPoolExecutor(THREADS, "compare")
         self._histories: ResultCache[ControlHistory] = ResultCache(RESULTS_MAX)
-        self._missions: ResultCache[list[RecordedMission]] = ResultCache(RESULTS_MAX)
         self._measured: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
         self._counted: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
+        self._aligner = Aligner(store, self._samples, self.open, self._read_history, self._threads)
         self.study = Study(store, self._samples)
         self.stories = StoryTeller(store, self._samples, self._read_history, self._threads)
 
@@ -93,9 +72,9 @@ class Comparer:
 
     def compare(self, query: ComparisonQuery) -> Comparison:
         """Return lines, figures and differences of the sessions, in the requested order."""
-        aligned = self._align(query)
+        aligned = self._aligner.align(query)
 
-        def compare_one(session: _AlignedSession) -> Compared:
+        def compare_one(session: AlignedSession) -> Compared:
             with reading_content(session.row):
                 return self._compare_one(session, query)
 
@@ -104,12 +83,18 @@ class Comparer:
             signals=_chosen_signals(query.signals, aligned),
             sessions=list(self._threads.map(compare_one, aligned)),
             figures=list(FIGURES),
+            likeness=judge(
+                [
+                    (session.row.name, parts_within(session.segments, _range(session, query).spans))
+                    for session in aligned
+                ]
+            ),
             differences=find_differences([(session.row, session.history) for session in aligned]),
         )
 
     def lines(self, query: LinesQuery) -> Lines:
         """Return the lines alone, for a part of the time."""
-        aligned = self._align(query)
+        aligned = self._aligner.align(query)
         drawn = [
             SessionLines(
                 id=session.row.id or 0,
@@ -128,29 +113,7 @@ class Comparer:
         """Return the recording of a session."""
         return Recording(self._store, find_row(self._store, session))
 
-    def _align(self, query: LinesQuery) -> list[_AlignedSession]:
-        recordings = [self.open(number) for number in dict.fromkeys(query.sessions)]
-        return list(self._threads.map(lambda recording: self._align_one(recording, query), recordings))
-
-    def _align_one(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
-        with reading_content(recording.row):
-            return self._find_offset(recording, query)
-
-    def _find_offset(self, recording: Recording, query: LinesQuery) -> _AlignedSession:
-        # All at once, since the columns of a topic are read together.
-        signals = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
-        history = self._read_history(recording)
-        set_point = signals.get(SET_POINT)
-        steps = set_point_steps(set_point, history.armed) if set_point is not None else []
-        bookmarks = read_bookmarks(self._store, recording)
-        missions = self._missions.compute(recording.row, None, lambda: read_missions(recording)[0])
-        try:
-            offset, problem = find_moment(query.align, history, steps, bookmarks, missions), ""
-        except NoMomentError as missing:
-            offset, problem = None, str(missing)
-        return _AlignedSession(recording, history, steps, bookmarks, missions, offset, problem)
-
-    def _compare_one(self, session: _AlignedSession, query: ComparisonQuery) -> Compared:
+    def _compare_one(self, session: AlignedSession, query: ComparisonQuery) -> Compared:
         row = session.row
         taken = _range(session, query)
         return Compared(
@@ -164,6 +127,8 @@ class Comparer:
             armed=[(span.start, span.end) for span in session.history.armed],
             set_point_steps=len(session.steps),
             mission_steps=_first_starts(session.missions),
+            segments=session.segments,
+            segment=None if session.segment is None else session.segments.index(session.segment) + 1,
             events=read_events(session.recording, EVENTS_MAX),
             markers=session.markers,
             series=self._draw(session, query),
@@ -172,11 +137,13 @@ class Comparer:
         )
 
     def _measure(
-        self, session: _AlignedSession, taken: EvaluationRange, query: ComparisonQuery
+        self, session: AlignedSession, taken: EvaluationRange, query: ComparisonQuery
     ) -> dict[str, Figure]:
         band = query.band
         if query.range is not None and session.offset is None:
             return complete({}, session.problem)
+        if query.range is None and query.over == "segment" and session.segment is None:
+            return complete({}, NO_SEGMENT)
         measured = self._measured.compute(
             session.row,
             (taken, band),
@@ -187,7 +154,7 @@ class Comparer:
         )
         return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
-    def _draw(self, session: _AlignedSession, query: LinesQuery) -> dict[str, SignalLine]:
+    def _draw(self, session: AlignedSession, query: LinesQuery) -> dict[str, SignalLine]:
         if session.offset is None:
             return {}
         view = (
@@ -204,9 +171,11 @@ class Comparer:
         return {name: SignalLine.of(line) for name, line in drawn.items()}
 
 
-def _range(session: _AlignedSession, query: ComparisonQuery) -> EvaluationRange:
+def _range(session: AlignedSession, query: ComparisonQuery) -> EvaluationRange:
     if query.range is not None:
         return EvaluationRange(() if session.offset is None else (_shift(query.range, session.offset),))
+    if query.over == "segment":
+        return EvaluationRange(() if session.segment is None else (session.segment.span,))
     anchor = session.offset if query.align.by in ("armed", "set_point") else None
     return EvaluationRange(session.history.armed, anchor)
 
@@ -224,7 +193,7 @@ def _shift(part: TimeRange, offset: float) -> Span:
     return Span(low + offset, max(high, low + 1e-3) + offset)
 
 
-def _chosen_signals(names: Sequence[str], aligned: Sequence[_AlignedSession]) -> list[Signal]:
+def _chosen_signals(names: Sequence[str], aligned: Sequence[AlignedSession]) -> list[Signal]:
     known: dict[str, Signal] = {}
     topics = {split(name)[0] for name in names}
     for session in aligned:

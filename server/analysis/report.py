@@ -49,6 +49,7 @@ def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
         _session_table(comparison),
         _charts(comparison, view),
         "<h2>Figures</h2>",
+        f"<p>{escape(comparison.likeness.why)}</p>",
         _figure_table(comparison),
         "<h2>Differences</h2>" if len(comparison.sessions) > 1 else "<h2>Settings</h2>",
         _difference_table(comparison),
@@ -63,6 +64,8 @@ def _moment(comparison: Comparison) -> str:
         return f"step {align.number} of the set point"
     if align.by == "mission":
         return f"the start of the mission’s step {align.step}" if align.step else "the start of the mission"
+    if align.by == "segment":
+        return "the beginning of the segment"
     return ALIGNED.get(align.by) or f"the bookmark “{align.marker}”"
 
 
@@ -220,7 +223,11 @@ def _session_table(comparison: Comparison) -> str:
 
 
 def _figure_table(comparison: Comparison) -> str:
-    head = ("Figure", *(escape(session.name) for session in comparison.sessions), "Meaning")
+    head = (
+        "Figure",
+        *(escape(session.name) + _covered(session) for session in comparison.sessions),
+        "Meaning",
+    )
     rows = (
         (
             escape(f"{meaning.title}, {meaning.unit}" if meaning.unit else meaning.title),
@@ -230,6 +237,13 @@ def _figure_table(comparison: Comparison) -> str:
         for meaning in comparison.figures
     )
     return _table(head, rows)
+
+
+def _covered(session: Compared) -> str:
+    """Return what the figures cover, s since the session's start."""
+    if not session.range:
+        return ""
+    return f"<small>{session.range[0][0]:.1f} to {session.range[-1][1]:.1f} s of the recording</small>"
 
 
 def _value(session: Compared, meaning: FigureMeaning) -> str:

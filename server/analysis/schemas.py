@@ -1,14 +1,17 @@
 """Requests and answers of the comparison of sessions."""
 
 from math import isfinite
-from typing import Annotated, Self
+from re import fullmatch
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 from server.analysis.alignment import Align
 from server.analysis.decimation import Envelope
 from server.analysis.differences import Difference
+from server.analysis.likeness import Likeness
+from server.analysis.segments import SEGMENTS_MAX, Segment
 from server.analysis.signals import Signal
 from server.http.request_body import RequestBody
 from server.library.missions import MissionStepStart
@@ -24,6 +27,9 @@ REPORT_POINTS = 2000
 DEFAULT_SIGNALS = ("depth.depth", "control.set_point", "control.error", "navigation.z", "detection.area")
 """The signals of the thesis's Figures 14 to 16."""
 
+SEGMENTS = r"^(\d+:\d+(,\d+:\d+)*)?$"
+"""Chosen segments as a text: 7:2,9:1."""
+
 Identifier = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]
 
@@ -35,6 +41,13 @@ class TimeRange(RequestBody):
     end: Annotated[float, Field(allow_inf_nan=False)]
 
 
+class SegmentChoice(RequestBody):
+    """A segment of a session."""
+
+    session: Identifier
+    segment: Annotated[int, Field(ge=1, le=SEGMENTS_MAX, description="from 1 on, in order of time")]
+
+
 class LinesQuery(RequestBody):
     """Sessions, their signals, and their alignment."""
 
@@ -43,12 +56,27 @@ class LinesQuery(RequestBody):
     align: Align = Align()
     points: Annotated[int, Field(ge=10, le=10_000, description="columns of each line")] = 1000
     view: TimeRange | None = Field(default=None, description="the drawn time range; all of it if null")
+    segments: Annotated[list[SegmentChoice], Field(max_length=SESSIONS_MAX)] = Field(
+        default=[], description="at most one of each session; of the others the one most alike"
+    )
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        chosen = [choice.session for choice in self.segments]
+        if len(set(chosen)) < len(chosen):
+            raise ValueError("Choose one segment of each session.")
+        if not set(chosen) <= set(self.sessions):
+            raise ValueError("Choose segments of the compared sessions only.")
+        return self
 
 
 class ComparisonQuery(LinesQuery):
     """A comparison: lines, and the range of the figures."""
 
-    range: TimeRange | None = Field(default=None, description="for the figures; the armed time if null")
+    over: Literal["armed", "segment"] = Field(
+        default="armed", description="what the figures cover where `range` is null"
+    )
+    range: TimeRange | None = Field(default=None, description="for the figures")
     band: Annotated[float, Field(gt=0, le=10, description="m, of the settling time")] | None = None
     figures: bool = Field(default=True, description="false: none, and the answer comes sooner")
 
@@ -72,6 +100,10 @@ class ReportQuery(BaseModel):
     step: str = ""
     start: FiniteFloat | None = Field(default=None, description="start of the range for the figures")
     end: FiniteFloat | None = None
+    over: str = "armed"
+    segments: Annotated[str, Field(pattern=SEGMENTS, max_length=200)] = Field(
+        default="", description="as “7:2,9:1”: of session 7 the second, of session 9 the first"
+    )
     view_start: FiniteFloat | None = Field(
         default=None, description="start of the part that the charts show first"
     )
@@ -86,6 +118,8 @@ class ReportQuery(BaseModel):
                 "align": {"by": self.by, "number": self.number, "marker": self.marker, "step": self.step},
                 "points": REPORT_POINTS,
                 "range": _range(self.start, self.end),
+                "over": self.over,
+                "segments": read_segments(self.segments),
             }
         )
 
@@ -93,6 +127,14 @@ class ReportQuery(BaseModel):
     def shown(self) -> TimeRange | None:
         """The time range that the charts show first; None: all of it."""
         return _range(self.view_start, self.view_end)
+
+
+def read_segments(text: str) -> list[SegmentChoice]:
+    """Return the chosen segments of a text such as “7:2,9:1”. Raise ValueError."""
+    if not fullmatch(SEGMENTS, text):
+        raise ValueError("segments are written as 7:2,9:1, the second of session 7 and the first of 9.")
+    pairs = [pair.split(":") for pair in text.split(",") if pair]
+    return [SegmentChoice(session=int(session), segment=int(segment)) for session, segment in pairs]
 
 
 def _range(start: float | None, end: float | None) -> TimeRange | None:
@@ -140,6 +182,8 @@ class Compared(SessionLines):
     mission_steps: list[MissionStepStart] = Field(
         description="the steps of its missions that began, each once, in the order of the document"
     )
+    segments: list[Segment] = Field(description=f"in order of time, the first {SEGMENTS_MAX}")
+    segment: int | None = Field(description="the chosen one, from 1 on; null without any")
     events: list[Moment]
     markers: list[Moment]
     range: list[tuple[float, float]] = Field(description="range of the figures")
@@ -159,4 +203,5 @@ class Comparison(BaseModel):
     signals: list[Signal] = Field(description="the requested ones that at least one session has")
     sessions: list[Compared]
     figures: list[FigureMeaning]
+    likeness: Likeness = Field(description="of what the figures cover")
     differences: list[Difference]

@@ -20,12 +20,11 @@ from server.analysis.figures import (
 )
 from server.analysis.moments import ControlHistory, Span
 from server.analysis.samples import Samples
-from server.analysis.segments import Segment
+from server.analysis.segments import SEGMENTS_MAX, Segment
 from server.library.content import Recording
 from server.library.timeline import EVENTS_MAX, read_events
 from server.metrics.figure import Figure, FigureMeaning, describe
 
-SEGMENTS_MAX = 200
 _SHARED = ("rmse", "cycle_amplitude", "overshoot", "settling_time", "fin_strokes", "frames_lost")
 """Those of a comparison that a dive shows, too."""
 STORY_FIGURES: tuple[FigureMeaning, ...] = (

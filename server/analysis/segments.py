@@ -19,6 +19,9 @@ from server.metrics.series import Series
 TOGETHER = 1.0
 """s between two changes that belong together, and the least length of a segment that others follow."""
 
+SEGMENTS_MAX = 200
+"""Of a session, that are shown."""
+
 
 class Segment(BaseModel):
     """A time in which the robot was armed and nothing was changed; s since the session's start."""
@@ -33,6 +36,11 @@ class Segment(BaseModel):
     set_point: float | None = Field(
         description="m; null where no depth was held, or where it changed on and on"
     )
+
+    @property
+    def span(self) -> Span:
+        """Its time."""
+        return Span(self.start, self.end)
 
 
 class _Timed(Protocol):

@@ -14,8 +14,8 @@ from server.analysis.moments import ControlHistory
 from server.analysis.result_cache import ResultCache
 from server.analysis.samples import Samples
 from server.analysis.schemas import SignalLine, TimeRange
-from server.analysis.segment_figures import SEGMENTS_MAX, DiveFigures, StoryFigures
-from server.analysis.segments import Segment, find_segments
+from server.analysis.segment_figures import DiveFigures, StoryFigures
+from server.analysis.segments import SEGMENTS_MAX, Segment, find_segments
 from server.analysis.track import DEPTH, ESTIMATE, TRUE, SwumTrack, find_tracks
 from server.library.content import Recording, reading_content
 from server.library.crafts import Water

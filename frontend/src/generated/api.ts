@@ -512,7 +512,7 @@ export interface components {
              * @default start
              * @enum {string}
              */
-            by: "start" | "armed" | "set_point" | "marker" | "mission";
+            by: "start" | "armed" | "set_point" | "marker" | "mission" | "segment";
             /**
              * @description its name; the first match counts
              * @default
@@ -940,6 +940,10 @@ export interface components {
                 number,
                 number
             ][];
+            /** @description the chosen one, from 1 on; null without any */
+            segment: number | null;
+            /** @description in order of time, the first 200 */
+            segments: components["schemas"]["Segment"][];
             /** @description by signal; missing signals are left out */
             series: {
                 [key: string]: components["schemas"]["SignalLine"];
@@ -955,6 +959,8 @@ export interface components {
             align: components["schemas"]["Align"];
             differences: components["schemas"]["Difference"][];
             figures: components["schemas"]["FigureMeaning"][];
+            /** @description of what the figures cover */
+            likeness: components["schemas"]["Likeness"];
             sessions: components["schemas"]["Compared"][];
             /** @description the requested ones that at least one session has */
             signals: components["schemas"]["Signal"][];
@@ -965,10 +971,17 @@ export interface components {
             band?: number | null;
             /** @description false: none, and the answer comes sooner */
             figures?: boolean;
+            /**
+             * @description what the figures cover where `range` is null
+             * @enum {string}
+             */
+            over?: "armed" | "segment";
             /** @description columns of each line */
             points?: number;
-            /** @description for the figures; the armed time if null */
+            /** @description for the figures */
             range?: components["schemas"]["TimeRange"] | null;
+            /** @description at most one of each session; of the others the one most alike */
+            segments?: components["schemas"]["SegmentChoice"][];
             sessions: number[];
             signals: string[];
             /** @description the drawn time range; all of it if null */
@@ -1519,6 +1532,12 @@ export interface components {
             name: string;
             why: string;
         };
+        /** @description Likeness of the compared parts: the same segments by mode, set point and duration. */
+        Likeness: {
+            alike: boolean;
+            /** @description why not, for a person; empty where they are */
+            why: string;
+        };
         /** @description The lines of a time range. */
         Lines: {
             sessions: components["schemas"]["SessionLines"][];
@@ -1528,6 +1547,8 @@ export interface components {
             align?: components["schemas"]["Align"];
             /** @description columns of each line */
             points?: number;
+            /** @description at most one of each session; of the others the one most alike */
+            segments?: components["schemas"]["SegmentChoice"][];
             sessions: number[];
             signals: string[];
             /** @description the drawn time range; all of it if null */
@@ -2380,6 +2401,12 @@ export interface components {
             start: number;
             /** @description the controller's name for a person */
             title: string;
+        };
+        /** @description A segment of a session. */
+        SegmentChoice: {
+            /** @description from 1 on, in order of time */
+            segment: number;
+            session: number;
         };
         /** @description One recording; "interrupted" if the server ended without closing it: its stored samples remain. */
         Session: {
@@ -3256,6 +3283,7 @@ export type JsonValue = components['schemas']['JsonValue'];
 export type LayoutDetails = components['schemas']['LayoutDetails'];
 export type LayoutDocument = components['schemas']['LayoutDocument'];
 export type LeftOut = components['schemas']['LeftOut'];
+export type Likeness = components['schemas']['Likeness'];
 export type Lines = components['schemas']['Lines'];
 export type LinesQuery = components['schemas']['LinesQuery'];
 export type LinkFault = components['schemas']['LinkFault'];
@@ -3342,6 +3370,7 @@ export type ScenarioSummary = components['schemas']['ScenarioSummary'];
 export type ScenarioText = components['schemas']['ScenarioText'];
 export type SceneView = components['schemas']['SceneView'];
 export type Segment = components['schemas']['Segment'];
+export type SegmentChoice = components['schemas']['SegmentChoice'];
 export type Session = components['schemas']['Session'];
 export type SessionBase = components['schemas']['SessionBase'];
 export type SessionChanges = components['schemas']['SessionChanges'];
@@ -3896,6 +3925,9 @@ export interface operations {
                 /** @description start of the range for the figures */
                 start?: number | null;
                 end?: number | null;
+                over?: string;
+                /** @description as “7:2,9:1”: of session 7 the second, of session 9 the first */
+                segments?: string;
                 /** @description start of the part that the charts show first */
                 view_start?: number | null;
                 view_end?: number | null;

@@ -19,7 +19,7 @@ export const compare = {
   },
   align: {
     label: 'Align at',
-    by: { start: 'Start', armed: 'Arming', set_point: 'Set-point step', marker: 'Bookmark', mission: 'Mission step' },
+    by: { start: 'Start', armed: 'Arming', set_point: 'Set-point step', marker: 'Bookmark', mission: 'Mission step', segment: 'Segment' },
     step: 'Set-point step',
     stepNumber: (number: number) => `no. ${number}`,
     bookmark: 'Bookmark',
@@ -57,6 +57,7 @@ export const compare = {
     since: {
       start: 's since the start of the recording',
       armed: 's since arming',
+      segment: 's since the beginning of the segment',
       step: (number: number) => `s since step ${number} of the set point`,
       bookmark: (bookmark: string) => `s since “${bookmark}”`,
       mission: (place: string) => (place === '' ? 's since the start of the mission' : `s since the start of the mission’s step ${place}`),
@@ -78,6 +79,8 @@ export const compare = {
     over: 'Time range of the figures',
     armed: 'Time armed',
     visible: 'Visible range',
+    segments: 'Segments',
+    segmentsHint: 'one segment of each session: a time with one controller, its gains and one set point',
     visibleNow: 'Use visible range',
     visibleHint: 'the time range that the charts show',
     zoomFirst: 'Zoom the charts first',
@@ -85,6 +88,13 @@ export const compare = {
     computing: 'Figures are being computed…',
     label: 'Figures of the sessions',
     hint: 'Point at a figure to see its meaning and its place in the depth chart.',
+  },
+  segments: {
+    option: (number: number, name: string, from: string, to: string) => `${number}: ${name}, ${from} – ${to}`,
+    none: 'It was never armed: it has no segments.',
+    missing: 'No such segment',
+    align: 'Align at their beginnings',
+    hint: 'Those most alike are chosen at first: the same mode, set points within 5 cm, durations within a factor of 2.',
   },
   differences: {
     title: 'Differences',

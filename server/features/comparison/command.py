@@ -1,6 +1,7 @@
 """`mucat report`: a comparison as an HTML file, from a shell."""
 
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -14,7 +15,7 @@ from server.platform.terminal import echo
 @click.option("-o", "--out", type=FILE, default="report.html", help="The file to write.")
 @click.option(
     "--align",
-    type=click.Choice(["start", "armed", "set_point"]),
+    type=click.Choice(["start", "armed", "set_point", "segment"]),
     default="armed",
     help="The moment of each session that is 0 s.",
 )
@@ -26,6 +27,18 @@ from server.platform.terminal import echo
 )
 @click.option("--marker", help="Align at the bookmark of this text instead.")
 @click.option("--mission-step", metavar="PATH", help="Align at the start of a mission's step instead: 3.1.2.")
+@click.option(
+    "--over",
+    type=click.Choice(["armed", "segment"]),
+    default="armed",
+    help="What the figures cover: the time armed, or a segment of each session.",
+)
+@click.option(
+    "--segments",
+    default="",
+    metavar="7:2,9:1",
+    help="The segments: of session 7 the second, of 9 the first. Default: those most alike.",
+)
 @click.option(
     "--signals",
     multiple=True,
@@ -41,6 +54,8 @@ def report(
     step: int,
     marker: str | None,
     mission_step: str | None,
+    over: Literal["armed", "segment"],
+    segments: str,
     signals: tuple[str, ...],
 ) -> None:
     """Compare sessions in an HTML file."""
@@ -54,6 +69,7 @@ def report(
         REPORT_POINTS,
         SESSIONS_MAX,
         ComparisonQuery,
+        read_segments,
     )
     from server.platform.shell_store import open_reader
 
@@ -67,6 +83,8 @@ def report(
             signals=list(signals or DEFAULT_SIGNALS),
             align=Align.model_validate(moment),
             points=REPORT_POINTS,
+            over=over,
+            segments=read_segments(segments),
         )
         with open_reader(settings.data) as store:
             text = write_report(Comparer(store).compare(query))

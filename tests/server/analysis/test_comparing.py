@@ -117,6 +117,59 @@ def test_figures_come_from_the_chosen_range_only(store: Store, session: int) -> 
     assert "no step" in calm.figures["rise_time"].words
 
 
+def test_a_segment_of_each_session_has_the_figures_of_its_part(
+    store: Store, settings: Settings, session: int
+) -> None:
+    # It begins armed, 3 s before the second step: its first segment is the end of a longer one.
+    late = record(store, settings, dive(begin=STEPPED - 3.0), name="late", started=STEPPED - 3.5)
+    wanted = {"over": "segment", "segments": [{"session": session, "segment": 2}]}
+    chosen = compare(store, session, late, align={"by": "segment"}, **wanted)
+    whole, tail = chosen.sessions
+    assert [len(item.segments) for item in chosen.sessions] == [2, 2]
+    assert (whole.segment, tail.segment) == (2, 2)
+    assert (whole.offset, tail.offset) == (
+        pytest.approx(STEPPED - STARTED_STEADY, abs=0.11),
+        pytest.approx(3.5, abs=0.11),
+    )
+    assert chosen.likeness.alike
+    # The integral of ((1 + x) exp(-x))² from 0 on is 5/4; the step is 0.5 m.
+    mean = 0.5**2 * 1.25 / WN / (DISARMED - STEPPED)
+    for item in chosen.sessions:
+        assert item.figures["rmse"].value == pytest.approx(mean**0.5, rel=0.03)
+        assert item.figures["rise_time"].value == pytest.approx(RISE, abs=0.01)
+        assert item.figures["card_latency"].value is None
+    alone = compare(store, session, over="segment", segments=[{"session": session, "segment": 1}])
+    first = alone.sessions[0].figures
+    mean = 0.5**2 * 1.25 / WN / (STEPPED - ARMED)
+    assert first["rmse"].value == pytest.approx(mean**0.5, rel=0.03)
+
+
+def test_a_session_without_the_chosen_segment_says_so(store: Store, settings: Settings, session: int) -> None:
+    never = record(store, settings, dive(arms=False), name="never")
+    chosen = [{"session": session, "segment": 3}]
+    comparison = compare(store, session, never, align={"by": "segment"}, over="segment", segments=chosen)
+    for item in comparison.sessions:
+        assert (item.segment, item.offset) == (None, None)
+        assert item.problem == "This session has no such segment."
+        assert {figure.words for figure in item.figures.values()} == {item.problem}
+    for wrong in ([*chosen, *chosen], [{"session": never + 1, "segment": 1}]):
+        with pytest.raises(ValueError, match="Choose"):
+            compare(store, session, never, segments=wrong)
+
+
+def test_unlike_parts_have_no_better_value(store: Store, settings: Settings, session: int) -> None:
+    like = record(store, settings, dive(gains={"kp": 6.0}), name="like")
+    late = record(store, settings, dive(begin=STEPPED + 1.0), name="late", started=STEPPED + 0.5)
+    never = record(store, settings, dive(arms=False), name="never")
+    assert compare(store, session, like).likeness.alike
+    why = compare(store, session, like, late).likeness.why
+    assert "“one” has 2 segments, “late” has 1 segment. Choose a segment of each." in why
+    assert "“never” was not armed in this part." in compare(store, session, never).likeness.why
+    # Of both sessions the second segment alone.
+    part = {"start": STEPPED - STARTED_STEADY + 1.0, "end": DISARMED - STARTED_STEADY}
+    assert compare(store, session, like, range=part).likeness.alike
+
+
 def test_losses_and_gaps_are_counted(store: Store, settings: Settings) -> None:
     session = record(store, settings, dive(lost=7))
     values = {"session_id": session, "topic": "depth", "kind": "missed", "time": ARMED + 1, "missed": 30}

@@ -128,6 +128,7 @@ function frameOf(comparison: Comparison, view: View, look: Look, charts: number)
 
 function axisTitle({ align }: Comparison): string {
   if (align.by === 'armed') return texts.charts.since.armed;
+  if (align.by === 'segment') return texts.charts.since.segment;
   if (align.by === 'set_point') return texts.charts.since.step(align.number);
   if (align.by === 'marker') return texts.charts.since.bookmark(align.marker || notes.noText);
   if (align.by === 'mission') return texts.charts.since.mission(align.step);

@@ -1,5 +1,5 @@
-/** What the address says of a comparison: `from` and `to` (s on the common axis), `signals` and `align`. */
-import type { Align } from '../../../api';
+/** What the address says of a comparison: `from` and `to` (s on the common axis), `signals`, `align` and `segments`. */
+import type { Align, SegmentChoice } from '../../../api';
 import type { View } from './figure';
 
 /** of a chart; more in an address are passed over */
@@ -13,11 +13,11 @@ export function readSignals(text: string): string[] {
   return [...new Set(names)].slice(0, MOST_SIGNALS);
 }
 
-/** What begins together, as `start`, `armed`, `set_point:2`, `marker:text` or `mission:step`; the start where it is none of these. */
+/** What begins together, as `start`, `armed`, `segment`, `set_point:2`, `marker:text` or `mission:step`; the start where it is none of these. */
 export function readAlign(text: string): Align {
   const start = { by: 'start', number: 1, marker: '', step: '' } as const;
   const [by = '', which = ''] = text.split(/:(.*)/s);
-  if (by === 'armed') return { ...start, by };
+  if (by === 'armed' || by === 'segment') return { ...start, by };
   if (by === 'marker' && which.length <= LONGEST) return { ...start, by, marker: which };
   if (by === 'mission' && which.length <= LONGEST) return { ...start, by, step: which };
   const number = Number(which);
@@ -28,7 +28,7 @@ export function readAlign(text: string): Align {
 export function writeAlign({ by, number, marker, step }: Align): string | null {
   if (by === 'start') return null;
   if (by === 'set_point') return `${by}:${number}`;
-  return by === 'armed' ? by : `${by}:${by === 'marker' ? marker : step}`;
+  return by === 'armed' || by === 'segment' ? by : `${by}:${by === 'marker' ? marker : step}`;
 }
 
 /** A part of the time; null where the address names none, or its end does not come after its start. */
@@ -38,3 +38,18 @@ export function readView(from: number | null, to: number | null): View | null {
 
 /** To the millisecond, as it stands in an address. */
 export const rounded = ({ start, end }: View): View => ({ start: Number(start.toFixed(3)), end: Number(end.toFixed(3)) });
+
+/** In the address where the server takes the segments that are most alike. */
+export const MOST_ALIKE = 'like';
+const MOST_SEGMENTS = 200;
+
+/** The chosen segments of these sessions, as `7:2,9:1`; those that are none are passed over. */
+export function readSegments(text: string, ids: readonly number[]): SegmentChoice[] {
+  const pairs = text.split(',').map((pair) => pair.split(':').map(Number));
+  return ids.flatMap((session) => {
+    const segment = pairs.find(([id]) => id === session)?.[1] ?? 0;
+    return Number.isInteger(segment) && segment >= 1 && segment <= MOST_SEGMENTS ? [{ session, segment }] : [];
+  });
+}
+
+export const writeSegments = (choices: readonly SegmentChoice[]): string => choices.map(({ session, segment }) => `${session}:${segment}`).join(',') || MOST_ALIKE;
