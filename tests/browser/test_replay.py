@@ -64,7 +64,7 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     page.keyboard.press("Space")
     wait_for_depth(page, 0.45, 0.55)
     page.keyboard.press("Shift+ArrowRight")
-    expect(page.get_by_role("button", name="Play")).to_be_visible()
+    expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
     expect(events.get_by_text("Stopped by the operator.")).to_be_visible()
 
     page.keyboard.press("Shift+ArrowLeft")

@@ -67,6 +67,7 @@ def test_the_thesis_experiment(page: Page, tmp_path: Path) -> None:
     expect(page.get_by_role("button", name="Record", exact=True)).to_be_visible()
     page.get_by_role("link", name="Sessions").click()
     page.get_by_role("link", name="figure 14", exact=True).click()
+    page.get_by_role("link", name="Data", exact=True).click()
     page.get_by_role("button", name="Create file").click()
     with page.expect_download() as download:
         page.get_by_role("link", name="Download").click()
