@@ -12,7 +12,8 @@ from server.analysis.moments import ControlHistory
 from server.analysis.result_cache import ResultCache
 from server.analysis.samples import Samples
 from server.analysis.schemas import LinesQuery
-from server.analysis.segments import SEGMENTS_MAX, Segment, find_segments
+from server.analysis.segment import SEGMENTS_MAX, Segment
+from server.analysis.segments import find_segments
 from server.library.content import Recording, reading_content
 from server.library.missions import RecordedMission, read_missions
 from server.library.timeline import Moment

@@ -6,7 +6,7 @@ from itertools import combinations
 from pydantic import BaseModel, Field
 
 from server.analysis.moments import Span
-from server.analysis.segments import TOGETHER, Segment
+from server.analysis.segment import TOGETHER, Segment
 
 SET_POINTS_APART = 0.05
 """m"""

@@ -2,23 +2,24 @@
 
 from math import isfinite
 from re import fullmatch
-from typing import Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 from server.analysis.alignment import Align
-from server.analysis.decimation import Envelope
 from server.analysis.differences import Difference
 from server.analysis.likeness import Likeness
-from server.analysis.segments import SEGMENTS_MAX, Segment
+from server.analysis.segment import SEGMENTS_MAX, Segment
 from server.analysis.signals import Signal
 from server.http.request_body import RequestBody
 from server.library.missions import MissionStepStart
 from server.library.timeline import Moment
 from server.metrics.figure import Figure, FigureMeaning
-from server.metrics.series import Floats
 from server.platform.models import IDENTIFIER_MAX
+
+if TYPE_CHECKING:
+    from server.analysis.decimation import Envelope
+    from server.metrics.series import Floats
 
 SESSIONS_MAX = 12
 SIGNALS_MAX = 24
@@ -141,7 +142,7 @@ def _range(start: float | None, end: float | None) -> TimeRange | None:
     return None if start is None or end is None else TimeRange(start=start, end=end)
 
 
-def _values(values: Floats) -> list[float | None]:
+def _values(values: "Floats") -> list[float | None]:
     """Return null for NaN, which JSON lacks."""
     return [float(f"{value:.6g}") if isfinite(value) else None for value in values.tolist()]
 
@@ -154,9 +155,9 @@ class SignalLine(BaseModel):
     high: list[float | None]
 
     @classmethod
-    def of(cls, line: Envelope) -> Self:
+    def of(cls, line: "Envelope") -> Self:
         """Return a decimated signal, values with six significant digits."""
-        return cls(time=np.round(line.time, 4).tolist(), low=_values(line.low), high=_values(line.high))
+        return cls(time=line.time.round(4).tolist(), low=_values(line.low), high=_values(line.high))
 
 
 class SessionLines(BaseModel):

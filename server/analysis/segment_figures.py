@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import inf
 
 import numpy as np
-from pydantic import BaseModel, Field
 
 from server.analysis.definitions import FIGURES
 from server.analysis.figures import (
@@ -20,7 +19,8 @@ from server.analysis.figures import (
 )
 from server.analysis.moments import ControlHistory, Span
 from server.analysis.samples import Samples
-from server.analysis.segments import SEGMENTS_MAX, Segment
+from server.analysis.segment import SEGMENTS_MAX, Segment
+from server.analysis.story_schemas import StoryFigures
 from server.library.content import Recording
 from server.library.timeline import EVENTS_MAX, read_events
 from server.metrics.figure import Figure, FigureMeaning, describe
@@ -39,16 +39,6 @@ DISARMING = 1.0
 NOT_HELD = "No depth was held."
 NOTHING_HELD_THERE = "No depth was held in this range."
 SEVERAL = "One number of several segments would mean little: see those of each."
-
-
-class StoryFigures(BaseModel):
-    """The figures of a dive, by name."""
-
-    meanings: list[FigureMeaning]
-    whole: dict[str, Figure] = Field(description="of the armed time, or of the chosen part")
-    segments: list[dict[str, Figure]] = Field(
-        description=f"in the order of the story's segments, the first {SEGMENTS_MAX}; empty for a chosen part"
-    )
 
 
 class DiveFigures:

@@ -4,21 +4,21 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from pydantic import BaseModel, Field
 
 from server.analysis.decimation import decimate
 from server.analysis.figures import MEASURED, SET_POINT
-from server.analysis.flags import Flag, gather_flags
+from server.analysis.flags import gather_flags
 from server.analysis.history import read_bookmarks
 from server.analysis.moments import ControlHistory
 from server.analysis.result_cache import ResultCache
 from server.analysis.samples import Samples
 from server.analysis.schemas import SignalLine, TimeRange
-from server.analysis.segment_figures import DiveFigures, StoryFigures
-from server.analysis.segments import SEGMENTS_MAX, Segment, find_segments
-from server.analysis.track import DEPTH, ESTIMATE, TRUE, SwumTrack, find_tracks
+from server.analysis.segment import SEGMENTS_MAX, Segment
+from server.analysis.segment_figures import DiveFigures
+from server.analysis.segments import find_segments
+from server.analysis.story_schemas import Story, StoryFigures, SwumTrack
+from server.analysis.track import DEPTH, ESTIMATE, TRUE, find_tracks
 from server.library.content import Recording, reading_content
-from server.library.crafts import Water
 from server.library.missions import read_missions
 from server.library.timeline import EVENTS_MAX, read_events
 from server.metrics.series import Series
@@ -29,18 +29,6 @@ COLUMNS = 1500
 """Of the line of the depth: as many as pixels of a page."""
 STORIES_MAX = 32
 SIGNALS = (MEASURED, SET_POINT)
-
-
-class Story(BaseModel):
-    """A session as one dive; times are s since its start."""
-
-    duration: float
-    water: Water
-    depth: SignalLine | None = Field(description="m; null where the session has none")
-    set_point: SignalLine | None = Field(description="m, while the depth was held; null where it never was")
-    segments: list[Segment] = Field(description=f"in order of time, the first {SEGMENTS_MAX}")
-    segment_count: int = Field(description="number of all segments")
-    flags: list[Flag] = Field(description="in order of time; of too many the gravest")
 
 
 class StoryTeller:

@@ -4,12 +4,11 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
-from pydantic import BaseModel, Field
 
 from server.analysis.samples import Samples
-from server.analysis.schemas import TimeRange
 from server.analysis.signals import Signal, list_signals, split
 from server.analysis.spectrum import SEGMENT_MOST, NoSpectrumError, find_spectrum, pair
+from server.analysis.story_schemas import SignalPair, Spectrum, SpectrumPeak, StudyQuery
 from server.library.content import Recording, reading_content
 from server.metrics.series import Floats, Series
 from server.platform.errors import NotFoundError
@@ -18,49 +17,10 @@ from server.recording.session import find_row
 
 FREQUENCIES_MAX = SEGMENT_MOST // 2 + 1
 PAIRS_MAX = 5000
-SPECTRA_MAX = 6
 
 
 class UnknownSignalError(NotFoundError):
     """The session has no such signal"""
-
-
-class StudyQuery(BaseModel):
-    """Signals of a session within a part of its time, or all of it; of a pair first the one across."""
-
-    session: int
-    signals: list[str]
-    part: TimeRange | None
-
-
-class SpectrumPeak(BaseModel):
-    """The highest place of a spectrum, as the sine that would make it."""
-
-    frequency: float = Field(description="Hz")
-    amplitude: float = Field(description="in the signal's unit")
-    share: float = Field(description="of the signal's variance, 0 to 1")
-
-
-class Spectrum(BaseModel):
-    """The one-sided power spectral density of a signal by Welch's method; its integral is the variance."""
-
-    signal: Signal
-    frequency: list[float] = Field(description="Hz")
-    density: list[float] = Field(description="in the signal's unit, squared, per Hz")
-    rate: float = Field(description="Hz, of the even grid that the samples were laid on")
-    segments: int = Field(description="number of averaged periodograms")
-    peak: SpectrumPeak | None = Field(description="null for a constant")
-    problem: str = Field(description="why there is no spectrum; empty if there is one")
-
-
-class SignalPair(BaseModel):
-    """Two signals at the same times, in order of time."""
-
-    x: Signal
-    y: Signal
-    time: list[float] = Field(description="s since the session's start")
-    x_values: list[float]
-    y_values: list[float]
 
 
 class Study:

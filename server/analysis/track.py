@@ -6,9 +6,9 @@ Each arming begins a track of its own at 0, 0. The true one is laid so that both
 from collections.abc import Mapping
 
 import numpy as np
-from pydantic import BaseModel, Field
 
 from server.analysis.moments import Span
+from server.analysis.story_schemas import SwumTrack, Way
 from server.metrics.series import Floats, Series
 
 ESTIMATE = ("track.x", "track.y", "track.deviation_x", "track.deviation_y")
@@ -18,23 +18,6 @@ TRACKS_MAX = 20
 """Tracks in one answer, the first ones of a session."""
 POINTS_MAX = 600
 """Points of all tracks together, and as many of the true ones."""
-
-
-class Way(BaseModel):
-    """Points of a track, in order of time."""
-
-    time: list[float] = Field(description="s since the session's start")
-    x: list[float] = Field(description="m, along heading 0")
-    y: list[float] = Field(description="m, along heading 90°")
-    depth: list[float] = Field(description="m")
-
-
-class SwumTrack(BaseModel):
-    """The track from an arming to the disarming."""
-
-    estimate: Way = Field(description="by dead reckoning: its error grows")
-    deviation: tuple[float, float] = Field(description="m, standard deviations of the last x and y")
-    truth: Way | None = Field(description="null where it was not simulated")
 
 
 def find_tracks(series: Mapping[str, Series], armed: tuple[Span, ...]) -> list[SwumTrack]:

@@ -3,9 +3,7 @@
 from fastapi.responses import Response
 
 from server.analysis.schemas import StoryFiguresQuery
-from server.analysis.segment_figures import StoryFigures
-from server.analysis.story import Story
-from server.analysis.track import SwumTrack
+from server.analysis.story_schemas import Story, StoryFigures, SwumTrack
 from server.features.comparison.parts import PartEnd, PartStart, read_part
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.http.dependencies import Provided

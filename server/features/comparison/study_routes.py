@@ -6,7 +6,7 @@ from fastapi import Query
 from fastapi.responses import Response
 
 from server.analysis.schemas import SignalName
-from server.analysis.study import SPECTRA_MAX, SignalPair, Spectrum, StudyQuery
+from server.analysis.story_schemas import SPECTRA_MAX, SignalPair, Spectrum, StudyQuery
 from server.features.comparison.parts import PartEnd, PartStart, read_part
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.http.dependencies import Provided

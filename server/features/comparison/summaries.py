@@ -9,7 +9,7 @@ from sqlalchemy import Connection, update
 from sqlalchemy.dialects.sqlite import insert
 from sqlmodel import col, select
 
-from server.analysis.summary import name_from
+from server.analysis.session_name import name_from
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.platform.models import SessionRow, SummaryRow
 from server.platform.store import Store, StoreError

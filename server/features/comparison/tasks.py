@@ -11,9 +11,8 @@ from server.analysis.comparer import Comparer
 from server.analysis.report import write_report
 from server.analysis.schemas import ComparisonQuery, LinesQuery, ReportQuery, StoryFiguresQuery
 from server.analysis.signals import Signal
-from server.analysis.study import Spectrum, StudyQuery
+from server.analysis.story_schemas import Spectrum, StudyQuery, SwumTrack
 from server.analysis.summary import summarise
-from server.analysis.track import SwumTrack
 from server.platform.errors import ApiError, UnavailableError
 from server.platform.store import Reader
 from server.processes.task_process import write_answer

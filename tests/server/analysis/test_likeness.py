@@ -4,7 +4,7 @@ import pytest
 
 from server.analysis.likeness import choose_segments, judge, parts_within
 from server.analysis.moments import Span
-from server.analysis.segments import Segment
+from server.analysis.segment import Segment
 
 
 def held(start: float, end: float, set_point: float | None = 1.0, mode: str = "automatic") -> Segment:

@@ -12,8 +12,8 @@ from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents
 from server.analysis.comparer import Comparer
 from server.analysis.schemas import TimeRange
-from server.analysis.segments import Segment
-from server.analysis.story import Story
+from server.analysis.segment import Segment
+from server.analysis.story_schemas import Story
 from server.platform.models import BookmarkRow
 from server.platform.settings import Settings
 from server.platform.store import Store

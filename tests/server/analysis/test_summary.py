@@ -9,7 +9,8 @@ from robot_runtime.contract import documents
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents
 from server.analysis.comparer import Comparer
-from server.analysis.summary import name_from, summarise
+from server.analysis.session_name import name_from
+from server.analysis.summary import summarise
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.schemas import CURVE_POINTS, SessionSummary

@@ -10,9 +10,10 @@ from robot_runtime.experiments.comm_test.document import CELLS_MAX
 from robot_runtime.experiments.scenario.document import EVENTS_MAX as SCENARIO_EVENTS_MAX
 from server.analysis.flags import FLAGS_MAX
 from server.analysis.schemas import SESSIONS_MAX
-from server.analysis.segments import SEGMENTS_MAX
+from server.analysis.segment import SEGMENTS_MAX
 from server.analysis.story import COLUMNS
-from server.analysis.study import FREQUENCIES_MAX, PAIRS_MAX, SPECTRA_MAX
+from server.analysis.story_schemas import SPECTRA_MAX
+from server.analysis.study import FREQUENCIES_MAX, PAIRS_MAX
 from server.analysis.summary import NAMES_MAX
 from server.analysis.track import POINTS_MAX, TRACKS_MAX
 from server.app import create_app
