@@ -8,7 +8,7 @@ const ALL = [...PAGES, 'flight', 'exhibit', 'gamepads', 'replay', 'people', 'bri
 
 export type PageName = (typeof ALL)[number] | 'unknown';
 
-/** ms from a change of what is seen until the address says so: browsers refuse many changes in a row */
+/** ms between two writings of the address: browsers refuse many in a row */
 const WRITE_AFTER = 300;
 
 /** The page that the address names after its hash: Operate where it names none, `unknown` where there is no such page. */
@@ -22,6 +22,8 @@ export class Router {
   /** the address as it was read or written here last */
   #known = '';
   #writing: ReturnType<typeof setTimeout> | undefined;
+  /** when it was written here last, ms */
+  #written = -Infinity;
 
   constructor() {
     const read = () => {
@@ -58,7 +60,10 @@ export class Router {
     if (this.#hash() === before) return;
     clearTimeout(this.#writing);
     if (!step) {
-      this.#writing = setTimeout(() => this.#write('replaceState', this.#hash()), WRITE_AFTER);
+      // At once where it rested: whoever reloads then sees the same.
+      const wait = this.#written + WRITE_AFTER - performance.now();
+      if (wait <= 0) this.#write('replaceState', this.#hash());
+      else this.#writing = setTimeout(() => this.#write('replaceState', this.#hash()), wait);
       return;
     }
     // What was still to be written belongs to the step before.
@@ -82,6 +87,7 @@ export class Router {
     // One that was just changed, and that nobody has told of yet, is where somebody wants to go.
     if (location.hash !== this.#known) return;
     history[how](history.state, '', hash);
+    this.#written = performance.now();
     this.#known = location.hash;
   }
 }

@@ -55,12 +55,14 @@ describe('what is seen', () => {
     }
   });
 
-  it('is written when it rests, in place of what was there', () => {
+  it('is written at once, and when it rests again, in place of what was there', () => {
     const router = new Router();
-    router.show({ at: 13 });
-    router.show({ at: 14, signals: null });
+    router.show({ at: 13, signals: null });
+    expect(stack).toEqual(['#/sessions/3?at=13']);
+    router.show({ at: 13.5 });
+    router.show({ at: 14 });
     expect(router.address).toBe('http://turtle:8000/#/sessions/3?at=14');
-    expect(stack).toEqual(['#/sessions/3?at=12.5&signals=depth.depth,imu.yaw']);
+    expect(stack).toEqual(['#/sessions/3?at=13']);
     vi.runAllTimers();
     expect(stack).toEqual(['#/sessions/3?at=14']);
   });
@@ -78,6 +80,7 @@ describe('what is seen', () => {
   it('never takes back who has gone on', () => {
     const router = new Router();
     router.show({ at: 13 });
+    router.show({ at: 14 });
     stack.push('#/operate');
     vi.runAllTimers();
     expect(stack.at(-1)).toBe('#/operate');
