@@ -25,7 +25,7 @@ DRAG = """async (slider) => {
     }
     return [written, performance.now() - began];
 }"""
-"""Drags the pressed slider to its middle; returns how often the page wrote its address, and ms of the drag."""
+"""Drags the pressed slider to its middle; returns how often the page wrote its address, and the ms of it."""
 WRITE_AFTER = 300.0
 """ms from one writing of the address to the next one at least."""
 
