@@ -25,7 +25,7 @@ from tests.server.blocks import thumbnail_block
 
 _SESSIONS = 10_000
 _OPENED = 5
-"""How often the list is opened; the median counts."""
+"""Openings of the list, of which the median counts."""
 _SIZE = {"width": 1440, "height": 900}
 _START = 1.8e9
 _EVERY = 3600.0

@@ -26,7 +26,7 @@ from server.library.timeline import EVENTS_MAX, read_events
 from server.metrics.figure import Figure, FigureMeaning, describe
 
 _SHARED = ("rmse", "cycle_amplitude", "overshoot", "settling_time", "fin_strokes", "frames_lost")
-"""Those of a comparison that a dive shows, too."""
+"""Figures of a comparison that a dive shows, too."""
 STORY_FIGURES: tuple[FigureMeaning, ...] = (
     describe("duration", "Duration", "s", 1, "Time armed in the range.", "neither"),
     describe("deepest", "Greatest depth", "m", 2, "Greatest depth in the range.", "neither"),

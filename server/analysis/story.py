@@ -17,7 +17,7 @@ from server.analysis.segment import SEGMENTS_MAX, Segment
 from server.analysis.segment_figures import DiveFigures
 from server.analysis.segments import find_segments
 from server.analysis.story_schemas import Story, StoryFigures, SwumTrack
-from server.analysis.track import DEPTH, ESTIMATE, TRUE, find_tracks
+from server.analysis.track import ESTIMATE, TRUE, find_tracks
 from server.library.content import Recording, reading_content
 from server.library.missions import read_missions
 from server.library.timeline import EVENTS_MAX, read_events
@@ -73,7 +73,7 @@ class StoryTeller:
         def find() -> list[SwumTrack]:
             estimate = self._samples.read(recording, ESTIMATE)
             # Reading the others takes seconds where a dive lasts hours.
-            others = self._samples.read(recording, [*TRUE, DEPTH]) if estimate else {}
+            others = self._samples.read(recording, [*TRUE, MEASURED]) if estimate else {}
             return find_tracks(estimate | others, self._read_history(recording).armed)
 
         with reading_content(recording.row):

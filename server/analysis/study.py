@@ -50,24 +50,19 @@ class Study:
         with reading_content(recording.row):
             known = _known(recording, query.signals)
             series = self._samples.read(recording, known)
+        for name in query.signals:
+            if name not in known or name not in series:
+                raise UnknownSignalError(f"This session has no signal “{name}”. Choose another.")
         part = query.part
         return [
             (known[name], series[name].within(part.start, part.end) if part else series[name])
             for name in query.signals
-            if _is_there(name, known, series)
         ]
 
 
 def _known(recording: Recording, names: Sequence[str]) -> dict[str, Signal]:
     topics = {split(name)[0] for name in names}
     return {signal.name: signal for signal in list_signals(recording, topics) if signal.name in names}
-
-
-def _is_there(name: str, known: dict[str, Signal], series: dict[str, Series]) -> bool:
-    """Return True. Raise UnknownSignalError for a signal that the session lacks."""
-    if name not in known or name not in series:
-        raise UnknownSignalError(f"This session has no signal “{name}”. Choose another.")
-    return True
 
 
 def _describe_spectrum(signal: Signal, series: Series) -> Spectrum:

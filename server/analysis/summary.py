@@ -1,4 +1,4 @@
-"""The summary of a session for the list, and the name that follows from it."""
+"""The summary of a session for the list."""
 
 from collections.abc import Callable, Iterable, Mapping
 from itertools import islice
@@ -7,7 +7,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from robot_runtime.contract.topics import DEPTH, DETECTION, MISSION, STATE, THUMBNAIL
+from robot_runtime.contract.topics import DETECTION, MISSION, STATE, THUMBNAIL
+from server.analysis.figures import MEASURED
 from server.analysis.history import read_history
 from server.analysis.samples import Samples
 from server.library.content import Recording, RecordingError, depth_loop, reading_content
@@ -17,7 +18,6 @@ from server.recording.schemas import CURVE_POINTS, SessionSummary
 
 T = TypeVar("T")
 
-_DEPTH = f"{DEPTH.name}.depth"
 NAMES_MAX = 8
 """Controllers, modes, and cards of a summary, the first of each."""
 
@@ -43,7 +43,7 @@ def summarise(recording: Recording) -> SessionSummary:
     """Return the summary of a session that has ended; damaged samples are left out. Raise StoreError."""
     reading, samples = _Reading(recording), Samples()
     part = reading.part
-    depth = next(iter((part(lambda: samples.read(recording, [_DEPTH])) or {}).values()), None)
+    depth = next(iter((part(lambda: samples.read(recording, [MEASURED])) or {}).values()), None)
     history = part(lambda: read_history(recording, samples))
     states = part(lambda: list(recording.changes(STATE.name)) if _has(recording, STATE.name) else []) or []
     armed = [state for state in states if state.get("armed")]

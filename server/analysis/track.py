@@ -7,13 +7,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from server.analysis.figures import MEASURED
 from server.analysis.moments import Span
 from server.analysis.story_schemas import SwumTrack, Way
 from server.metrics.series import Floats, Series
 
 ESTIMATE = ("track.x", "track.y", "track.deviation_x", "track.deviation_y")
 TRUE = ("truth.position_0", "truth.position_1", "truth.position_2")
-DEPTH = "depth.depth"
 TRACKS_MAX = 20
 """Tracks in one answer, the first ones of a session."""
 POINTS_MAX = 600
@@ -21,7 +21,7 @@ POINTS_MAX = 600
 
 
 def find_tracks(series: Mapping[str, Series], armed: tuple[Span, ...]) -> list[SwumTrack]:
-    """Return the tracks of the armed spans, by the signals ESTIMATE, TRUE and DEPTH as far as they exist."""
+    """Return the tracks of the armed spans, by the signals ESTIMATE, TRUE and MEASURED that exist."""
     if any(name not in series for name in ESTIMATE):
         return []
     spans = armed[:TRACKS_MAX]
@@ -37,7 +37,7 @@ def _find_track(series: Mapping[str, Series], span: Span, points: int) -> SwumTr
     # The end always: the deviation is there.
     times = inside[np.unique(np.linspace(0, inside.size - 1, points).astype(int))]
     x, y, across, along = (_at(series[name], times) for name in ESTIMATE)
-    depth = _at(series[DEPTH], times) if DEPTH in series else np.zeros(times.size)
+    depth = _at(series[MEASURED], times) if MEASURED in series else np.zeros(times.size)
     truth: Way | None = None
     if all(name in series for name in TRUE):
         north, east, down = (_at(series[name], times) for name in TRUE)
