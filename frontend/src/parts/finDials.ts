@@ -1,5 +1,6 @@
 /** The robot from above with its fins, and a dial for each fin. */
 import { degrees } from '../attitude';
+import { token } from '../theme.svelte';
 
 export interface Look {
   readonly leaf: string;
@@ -137,3 +138,17 @@ function line(context: CanvasRenderingContext2D, x: number, y: number, toX: numb
   context.lineTo(toX, toY);
   context.stroke();
 }
+
+/** The colours of the present theme. */
+export const finLook = (): Look => ({
+  leaf: token('well'),
+  shell: token('raised'),
+  edge: token('line-strong'),
+  face: token('well'),
+  tick: token('muted'),
+  hub: token('text'),
+  measured: token('series-measured'),
+  wanted: token('series-wanted'),
+  drive: token('series-third'),
+  track: token('raised'),
+});

@@ -1,3 +1,5 @@
+import { token } from '../theme.svelte';
+
 /** The artificial horizon as it is seen from inside, in a circle of 88 units about 0. */
 
 export interface Look {
@@ -99,3 +101,15 @@ function circle(context: CanvasRenderingContext2D, radius: number): void {
   context.beginPath();
   context.arc(0, 0, radius, 0, 2 * Math.PI);
 }
+
+/** Colours and font of the present theme. */
+export const horizonLook = (): Look => ({
+  sky: token('sky'),
+  earth: token('earth'),
+  edge: token('on-horizon'),
+  glass: token('line-strong'),
+  bank: token('muted'),
+  level: token('text'),
+  craft: token('aircraft'),
+  font: `${token('drawing')} ${token('font')}`,
+});
