@@ -51,8 +51,8 @@ help: ## list the targets
 run: setup ## start everything; the page is at http://localhost:8000 (PORT=8123 for another port)
 	@exec .venv/bin/mucat run --port $(PORT)
 
-test: build/.packages-test ## every check and every test, in lanes; the output of a lane comes when a command of it has ended
-	@$(IN_LANES) --jobs 6 test-real-time test-waiting test-checks test-rest test-page
+test: build/.packages-test ## every check and every test, in lanes; the output of a lane comes when a command of it has ended, and the time in the last line
+	@$(SYSTEM_PYTHON) -m tests.timed $(IN_LANES) --jobs 6 test-real-time test-waiting test-checks test-rest test-page
 
 # The page's checks need little: they run while packages are downloaded.
 test-real-time test-waiting test-checks test-rest: setup-test host-firmware

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.processor_time import ProcessorTime
 from tests.stack import Stack
 
 # A busy machine is slow, not wrong.
@@ -21,6 +22,12 @@ END_SECONDS = 60.0
 
 # While modules are loaded there is next to no garbage.
 gc.disable()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Count processor time where durations are asked for, too."""
+    if config.option.durations:
+        config.pluginmanager.register(ProcessorTime())
 
 
 def pytest_collection_finish() -> None:
