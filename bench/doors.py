@@ -13,9 +13,9 @@ import psutil
 
 from bench.connected_programs import ConnectedPrograms, ProgramDoor
 from bench.hub import process
-from bench.processes import core_percent, cpu_seconds
 from bench.ros2_programs import ZenohDoor
 from bench.websocket_programs import foxglove_door, rosbridge_door
+from server.features.bench.process_figures import core_percent, cpu_seconds
 from server.features.doors.config import DoorsConfig
 from server.platform.authority import Authority
 from server.platform.server_config import ServerConfig
@@ -67,7 +67,7 @@ def measure() -> dict[str, float]:
 
 
 def _idle(server: psutil.Process) -> float:
-    return core_percent({"server": server}, _SECONDS)["server"]
+    return core_percent({"server": server.pid}, _SECONDS)["server"]
 
 
 class _Count:
@@ -82,11 +82,11 @@ class _Count:
 
     def go_on(self, programs: ConnectedPrograms, seconds: float) -> None:
         """Measure for so many s."""
-        spent = cpu_seconds(self._server)
+        spent = cpu_seconds(self._server.pid)
         programs.begin()
         sleep(seconds)
         latencies, delivered = programs.end()
-        self._spent += cpu_seconds(self._server) - spent
+        self._spent += cpu_seconds(self._server.pid) - spent
         self._seconds += seconds
         self._latencies += latencies
         self._delivered += delivered

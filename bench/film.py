@@ -9,7 +9,8 @@ import time
 from pathlib import Path
 
 from bench import jitter
-from bench.processes import core_percent
+from bench.real_robot import pids
+from server.features.bench.process_figures import core_percent
 from server.features.exports.formats import check
 from server.features.exports.schemas import ExportOptions, Overlay
 from server.features.exports.selection import ExportSelection
@@ -43,7 +44,7 @@ def _record(name: str, config: FilmConfig) -> dict[str, float]:
             time.sleep(_SETTLE)
             processes = {part: stack.part(part) for part in ("runtime", "vision", "scene")}
             began = time.monotonic()
-            cpu = core_percent(processes | {"server": stack.server}, _SECONDS)
+            cpu = core_percent(pids(processes | {"server": stack.server}), _SECONDS)
             stack.api.post("/robot/stop").raise_for_status()
             stack.api.post(f"/sessions/{session}/stop").raise_for_status()
         end = began + _SECONDS

@@ -17,11 +17,11 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from bench import jitter
-from bench.processes import core_percent
-from bench.real_robot import LiveViewer
+from bench.real_robot import LiveViewer, pids
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.topics import CAMERA, TIME
 from robot_runtime.transport.blocks import HEADER
+from server.features.bench.process_figures import core_percent
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import Stack
@@ -68,7 +68,7 @@ def _phase(stack: Stack, name: str, figures: dict[str, float]) -> tuple[float, f
     """Add the processor time of half a minute to `figures`; return its times."""
     processes = {part: stack.part(part) for part in ("runtime", "vision", "scene")}
     began = time.monotonic()
-    cpu = core_percent(processes | {"server": stack.server}, _SECONDS)
+    cpu = core_percent(pids(processes | {"server": stack.server}), _SECONDS)
     figures |= {f"fly.cpu.{part}_percent.stream_{name}": value for part, value in cpu.items()}
     return began, began + _SECONDS
 

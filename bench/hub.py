@@ -16,7 +16,7 @@ import psutil
 
 from bench.hub_ends import TOPICS
 from bench.hub_viewers import OURS, THEIRS, Drain, TimedReading, TimedViewer
-from bench.processes import cpu_seconds
+from server.features.bench.process_figures import cpu_seconds
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
 from tests.stack import free_port
@@ -113,11 +113,11 @@ class _Look:
         """Count from now on."""
         self._drain.check()
         self._watch.begin()
-        self._before = self._drain.bytes, cpu_seconds(self._server)
+        self._before = self._drain.bytes, cpu_seconds(self._server.pid)
 
     def end(self) -> None:
         """Record the CPU time since `begin`, and the delay of each sample."""
-        spent, drained = cpu_seconds(self._server) - self._before[1], self._drain.bytes - self._before[0]
+        spent, drained = cpu_seconds(self._server.pid) - self._before[1], self._drain.bytes - self._before[0]
         self._drain.check()
         samples, size, latencies = self._watch.end()
         self._figures.cpu_ms_per_1000.append(spent * 1e6 / (samples * (1 + drained / size)))

@@ -16,8 +16,8 @@ from statistics import quantiles
 
 from sqlmodel import col, select
 
-from bench.processes import anonymous_mb, core_percent
-from bench.real_robot import LiveViewer, RealRobot
+from bench.real_robot import LiveViewer, RealRobot, pids
+from server.features.bench.process_figures import anonymous_mb, core_percent
 from server.library.content import Recording
 from server.platform.models import Gap
 from server.platform.settings import DataFolder
@@ -58,8 +58,8 @@ def _dive(robot: RealRobot) -> dict[str, float]:
     viewer = LiveViewer(robot)
     time.sleep(_SETTLE)
     began = time.monotonic()
-    percent = core_percent(robot.robot_processes, _SECONDS)
-    memory = sum(map(anonymous_mb, robot.robot_processes.values()))
+    percent = core_percent(pids(robot.robot_processes), _SECONDS)
+    memory = sum(map(anonymous_mb, pids(robot.robot_processes).values()))
     viewer.close()
     return {
         "began": began,

@@ -3,7 +3,7 @@
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -98,6 +98,11 @@ def store_picture(file: Path) -> None:
     """Write the picture of a yellow card."""
     camera = CardCamera(320, 240, SteadyClock(), lambda: None)
     cv2.imwrite(str(file), camera.draw(0.0, make_card("yellow", {})))
+
+
+def pids(processes: Mapping[str, psutil.Process]) -> dict[str, int]:
+    """Return the process IDs, by the same names."""
+    return {name: process.pid for name, process in processes.items()}
 
 
 class LiveViewer:

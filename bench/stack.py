@@ -6,8 +6,8 @@ from pathlib import Path
 
 from bench import jitter
 from bench.hour import copy_hours
-from bench.processes import anonymous_mb, core_percent
-from bench.real_robot import LiveViewer, RealRobot
+from bench.real_robot import LiveViewer, RealRobot, pids
+from server.features.bench.process_figures import anonymous_mb, core_percent
 from tests.stack import Stack
 
 _SETTLE = 5.0
@@ -32,14 +32,14 @@ def _load() -> dict[str, float]:
         time.sleep(_SETTLE)
         processes = robot.robot_processes | robot.outside
         received = viewer.bytes
-        cpu = core_percent(processes, _SECONDS)
+        cpu = core_percent(pids(processes), _SECONDS)
         figures = {f"cpu.{name}_percent": value for name, value in cpu.items()}
         figures["cpu.robot_stack_percent"] = sum(cpu[name] for name in robot.robot_processes)
         figures["stream.viewer_kb_per_s"] = (viewer.bytes - received) / _SECONDS / 1000
         for name, process in robot.robot_processes.items():
             figures[f"rss.{name}_mb"] = process.memory_info().rss / 1e6
-            figures[f"anonymous.{name}_mb"] = anonymous_mb(process)
-        figures["anonymous.robot_mb"] = sum(map(anonymous_mb, robot.robot_processes.values()))
+            figures[f"anonymous.{name}_mb"] = anonymous_mb(process.pid)
+        figures["anonymous.robot_mb"] = sum(map(anonymous_mb, pids(robot.robot_processes).values()))
         viewer.close()
         robot.api.post("/robot/stop").raise_for_status()
     return figures

@@ -11,12 +11,11 @@ from pathlib import Path
 from statistics import median
 
 import httpx
-import psutil
 
-from bench.processes import cpu_seconds
 from robot_runtime.places import BUILD
 from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
+from server.features.bench.process_figures import cpu_seconds, family
 from server.platform.settings import DataFolder
 from tests.shell import ShellAuth
 from tests.stack import Stack, free_port
@@ -81,8 +80,7 @@ def _start_services(name: str, enter: Callable[[], None]) -> dict[str, float]:
 
 
 def _spent(service: subprocess.Popen[bytes]) -> float:
-    process = psutil.Process(service.pid)
-    return sum(cpu_seconds(member) for member in (process, *process.children(recursive=True)))
+    return sum(map(cpu_seconds, family(service.pid)))
 
 
 def _run(arguments: list[str], enter: Callable[[], None], log: Path) -> subprocess.Popen[bytes]:

@@ -16,9 +16,9 @@ from pathlib import Path
 import httpx
 from playwright.sync_api import expect
 
-from bench.processes import anonymous_mb, core_percent
-from bench.real_robot import LiveViewer
+from bench.real_robot import LiveViewer, pids
 from server import VERSION
+from server.features.bench.process_figures import anonymous_mb, core_percent
 from tests.browser.opening import DESKTOP, launched, opened_page, signed_in
 from tests.proofs.installed import DATA, ENVIRONMENT, MUCAT, InstalledRobot, config_with_board, install_wheels
 from tests.proofs.roots import ROOTS, RootSystem
@@ -118,10 +118,10 @@ def _measure(robot: InstalledRobot, figures: Figures) -> None:
     viewer = LiveViewer(robot)
     processes = robot.processes()
     time.sleep(SETTLE)
-    percent = core_percent(processes, MEASURED)
+    percent = core_percent(pids(processes), MEASURED)
     for name, process in processes.items():
         figures.percent[name] = round(percent[name], 1)
-        figures.anonymous[name] = round(anonymous_mb(process), 1)
+        figures.anonymous[name] = round(anonymous_mb(process.pid), 1)
     viewer.close()
 
 
