@@ -55,7 +55,7 @@ def _record(name: str, config: FilmConfig) -> dict[str, float]:
 
 def _export_speeds(store: Reader, session: int) -> dict[str, float]:
     """Return the film's length over the time of its export, as it is and with the flight view's lines."""
-    taken = [moment for moment, _ in Recording(store, find_row(store, session)).film()]
+    taken = [moment for moment, _ in Recording.open(store, session).film()]
     speeds = dict[str, float]()
     kinds: tuple[tuple[Overlay, str], ...] = (
         ("none", "film.export_speed"),
@@ -73,7 +73,7 @@ def _export_speeds(store: Reader, session: int) -> dict[str, float]:
 
 def _sizes(data: Path, session: int, start: float, end: float) -> dict[str, float]:
     store = Reader(DataFolder(data).database)
-    sizes = [len(picture) for _, picture in Recording(store, find_row(store, session)).film(start, end)]
+    sizes = [len(picture) for _, picture in Recording.open(store, session).film(start, end)]
     speeds = _export_speeds(store, session)
     store.close()
     return speeds | {

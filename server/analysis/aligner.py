@@ -1,6 +1,5 @@
 """Reads the sessions of a comparison as far as it needs to lay them over each other."""
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -9,19 +8,13 @@ from server.analysis.figures import MEASURED, OUTPUT, SET_POINT
 from server.analysis.history import read_bookmarks, set_point_steps
 from server.analysis.likeness import choose_segments
 from server.analysis.moments import ControlHistory
-from server.analysis.result_cache import ResultCache
-from server.analysis.samples import Samples
 from server.analysis.schemas import LinesQuery
 from server.analysis.segment import SEGMENTS_MAX, Segment
-from server.analysis.segments import find_segments
+from server.analysis.session_reader import SessionReader
 from server.library.content import Recording, reading_content
-from server.library.missions import RecordedMission, read_missions
+from server.library.missions import RecordedMission
 from server.library.timeline import Moment
 from server.platform.models import SessionRow
-from server.platform.store import Reader
-
-RESULTS_MAX = 64
-"""Of each cache of results about a session."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,27 +39,15 @@ class AlignedSession:
 
 
 class Aligner:
-    """Finds the moment of each session that becomes 0 s; results about complete sessions are cached."""
+    """Finds the moment of each session that becomes 0 s."""
 
-    def __init__(
-        self,
-        store: Reader,
-        samples: Samples,
-        open_session: Callable[[int], Recording],
-        read_history: Callable[[Recording], ControlHistory],
-        threads: ThreadPoolExecutor,
-    ) -> None:
-        self._store = store
-        self._samples = samples
-        self._open = open_session
-        self._read_history = read_history
+    def __init__(self, reader: SessionReader, threads: ThreadPoolExecutor) -> None:
+        self._reader = reader
         self._threads = threads
-        self._missions: ResultCache[list[RecordedMission]] = ResultCache(RESULTS_MAX)
-        self._segments: ResultCache[list[Segment]] = ResultCache(RESULTS_MAX)
 
     def align(self, query: LinesQuery) -> list[AlignedSession]:
         """Return the sessions, each once. Raise UnknownSessionError, StoreError, RecordingError."""
-        recordings = [self._open(number) for number in dict.fromkeys(query.sessions)]
+        recordings = [self._reader.open(number) for number in dict.fromkeys(query.sessions)]
         sessions = list(self._threads.map(lambda recording: self._read(recording, query), recordings))
         numbers = {choice.session: choice.segment for choice in query.segments}
         chosen = choose_segments(
@@ -81,18 +62,16 @@ class Aligner:
     def _read(self, recording: Recording, query: LinesQuery) -> AlignedSession:
         with reading_content(recording.row):
             # All at once, since the columns of a topic are read together.
-            signals = self._samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
-            history = self._read_history(recording)
+            signals = self._reader.samples.read(recording, {*query.signals, MEASURED, SET_POINT, OUTPUT})
+            history = self._reader.history(recording)
             set_point = signals.get(SET_POINT)
             return AlignedSession(
                 recording,
                 history,
                 steps=set_point_steps(set_point, history.armed) if set_point is not None else [],
-                markers=read_bookmarks(self._store, recording),
-                missions=self._missions.compute(recording.row, None, lambda: read_missions(recording)[0]),
-                segments=self._segments.compute(
-                    recording.row, None, lambda: find_segments(history, set_point, recording.row.duration)
-                )[:SEGMENTS_MAX],
+                markers=read_bookmarks(self._reader.store, recording),
+                missions=self._reader.missions(recording),
+                segments=self._reader.segments(recording)[:SEGMENTS_MAX],
             )
 
 

@@ -15,11 +15,9 @@ from server.analysis.figures import (
     count,
     measure,
 )
-from server.analysis.history import read_history
 from server.analysis.likeness import NO_SEGMENT, judge, parts_within
-from server.analysis.moments import ControlHistory, Span
+from server.analysis.moments import Span
 from server.analysis.result_cache import ResultCache
-from server.analysis.samples import Samples
 from server.analysis.schemas import (
     Compared,
     Comparison,
@@ -30,19 +28,17 @@ from server.analysis.schemas import (
     SignalLine,
     TimeRange,
 )
+from server.analysis.session_reader import SessionReader
 from server.analysis.signals import Signal, list_signals, split
 from server.analysis.story import StoryTeller
 from server.analysis.study import Study
-from server.library.content import Recording, reading_content
+from server.library.content import reading_content
 from server.library.missions import MissionStepStart, RecordedMission
 from server.library.timeline import read_events
 from server.metrics.figure import Figure
 from server.platform.store import Reader
-from server.recording.session import find_row
 
 EVENTS_MAX = 500
-RESULTS_MAX = 64
-"""Of each cache of results about a session."""
 THREADS = 2
 """Only decompression and SQLite run in parallel: more threads do not help."""
 
@@ -54,19 +50,17 @@ class Comparer:
     """
 
     def __init__(self, store: Reader) -> None:
-        self._store = store
-        self._samples = Samples()
+        self.reader = SessionReader(store)
         self._threads = ThreadPoolExecutor(THREADS, "compare")
-        self._histories: ResultCache[ControlHistory] = ResultCache(RESULTS_MAX)
-        self._measured: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
-        self._counted: ResultCache[dict[str, Figure]] = ResultCache(RESULTS_MAX)
-        self._aligner = Aligner(store, self._samples, self.open, self._read_history, self._threads)
-        self.study = Study(store, self._samples)
-        self.stories = StoryTeller(store, self._samples, self._read_history, self._threads)
+        self._measured: ResultCache[dict[str, Figure]] = ResultCache()
+        self._counted: ResultCache[dict[str, Figure]] = ResultCache()
+        self._aligner = Aligner(self.reader, self._threads)
+        self.study = Study(self.reader)
+        self.stories = StoryTeller(self.reader, self._threads)
 
     def signals(self, session: int) -> list[Signal]:
         """Return the signals of a session that can be drawn."""
-        recording = self.open(session)
+        recording = self.reader.open(session)
         with reading_content(recording.row):
             return list_signals(recording)
 
@@ -106,13 +100,6 @@ class Comparer:
         ]
         return Lines(sessions=drawn)
 
-    def _read_history(self, recording: Recording) -> ControlHistory:
-        return self._histories.compute(recording.row, None, lambda: read_history(recording, self._samples))
-
-    def open(self, session: int) -> Recording:
-        """Return the recording of a session."""
-        return Recording(self._store, find_row(self._store, session))
-
     def _compare_one(self, session: AlignedSession, query: ComparisonQuery) -> Compared:
         row = session.row
         taken = _range(session, query)
@@ -147,10 +134,10 @@ class Comparer:
         measured = self._measured.compute(
             session.row,
             (taken, band),
-            lambda: measure(session.recording, self._samples, session.history, taken, band),
+            lambda: measure(session.recording, self.reader.samples, session.history, taken, band),
         )
         counted = self._counted.compute(
-            session.row, taken.spans, lambda: count(self._store, session.recording, taken.spans)
+            session.row, taken.spans, lambda: count(self.reader.store, session.recording, taken.spans)
         )
         return complete(measured | counted, NOTHING_THERE if taken.spans else NEVER_ARMED)
 
@@ -160,7 +147,7 @@ class Comparer:
         view = (
             _shift(query.view, session.offset) if query.view else Span(0.0, max(session.row.duration, 1e-3))
         )
-        signals = self._samples.read(session.recording, query.signals)
+        signals = self.reader.samples.read(session.recording, query.signals)
         known = list_signals(session.recording, {split(name)[0] for name in signals})
         angles = {signal.name for signal in known if signal.unit == "rad"}
         drawn = {

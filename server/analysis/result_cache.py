@@ -9,13 +9,17 @@ from server.platform.models import SessionRow
 
 T = TypeVar("T")
 _Key = tuple[int | None, str, object]
+RESULTS_MAX = 64
 
 
 class ResultCache(Generic[T]):
-    """The newest results about complete sessions, of a limited total size; several threads may use it."""
+    """The newest results about complete sessions, of a limited total size; several threads may use it.
 
-    def __init__(self, most: int, size: Callable[[T], int] = lambda _: 1) -> None:
-        self._most = most
+    Without a size, RESULTS_MAX of them.
+    """
+
+    def __init__(self, most: int | None = None, size: Callable[[T], int] = lambda _: 1) -> None:
+        self._most = RESULTS_MAX if most is None else most
         self._size = size
         self._total = 0
         self._results: OrderedDict[_Key, T] = OrderedDict()

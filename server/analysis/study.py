@@ -5,15 +5,13 @@ from dataclasses import asdict
 
 import numpy as np
 
-from server.analysis.samples import Samples
+from server.analysis.session_reader import SessionReader
 from server.analysis.signals import Signal, list_signals, split
 from server.analysis.spectrum import SEGMENT_MOST, NoSpectrumError, find_spectrum, pair
 from server.analysis.story_schemas import SignalPair, Spectrum, SpectrumPeak, StudyQuery
 from server.library.content import Recording, reading_content
 from server.metrics.series import Floats, Series
 from server.platform.errors import NotFoundError
-from server.platform.store import Reader
-from server.recording.session import find_row
 
 FREQUENCIES_MAX = SEGMENT_MOST // 2 + 1
 PAIRS_MAX = 5000
@@ -29,9 +27,8 @@ class Study:
     Methods raise UnknownSessionError, UnknownSignalError, StoreError and RecordingError.
     """
 
-    def __init__(self, store: Reader, samples: Samples) -> None:
-        self._store = store
-        self._samples = samples
+    def __init__(self, reader: SessionReader) -> None:
+        self._reader = reader
 
     def find_spectra(self, query: StudyQuery) -> list[Spectrum]:
         """Return the spectrum of each signal, in the requested order."""
@@ -46,10 +43,10 @@ class Study:
         )
 
     def _read(self, query: StudyQuery) -> list[tuple[Signal, Series]]:
-        recording = Recording(self._store, find_row(self._store, query.session))
+        recording = self._reader.open(query.session)
         with reading_content(recording.row):
             known = _known(recording, query.signals)
-            series = self._samples.read(recording, known)
+            series = self._reader.samples.read(recording, known)
         for name in query.signals:
             if name not in known or name not in series:
                 raise UnknownSignalError(f"This session has no signal “{name}”. Choose another.")

@@ -1,6 +1,6 @@
 """The summary of a session for the list."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from itertools import islice
 from math import floor, isfinite
 from typing import Any, TypeVar
@@ -9,9 +9,9 @@ import numpy as np
 
 from robot_runtime.contract.topics import DETECTION, MISSION, STATE, THUMBNAIL
 from server.analysis.figures import MEASURED
-from server.analysis.history import read_history
-from server.analysis.samples import Samples
-from server.library.content import Recording, RecordingError, depth_loop, reading_content
+from server.analysis.segments import find_segments
+from server.analysis.session_reader import SessionReader
+from server.library.content import Recording, RecordingError, reading_content
 from server.library.timeline import EVENTS_MAX, read_events
 from server.metrics.series import Series
 from server.recording.schemas import CURVE_POINTS, SessionSummary
@@ -39,14 +39,19 @@ class _Reading:
             return None
 
 
-def summarise(recording: Recording) -> SessionSummary:
-    """Return the summary of a session that has ended; damaged samples are left out. Raise StoreError."""
-    reading, samples = _Reading(recording), Samples()
+def summarise(reader: SessionReader, session: int) -> SessionSummary:
+    """Return the summary of a session that has ended; damaged samples are left out.
+
+    Raise UnknownSessionError, StoreError.
+    """
+    recording = reader.open(session)
+    reading = _Reading(recording)
     part = reading.part
-    depth = next(iter((part(lambda: samples.read(recording, [MEASURED])) or {}).values()), None)
-    history = part(lambda: read_history(recording, samples))
+    depth = next(iter((part(lambda: reader.samples.read(recording, [MEASURED])) or {}).values()), None)
+    history = part(lambda: reader.history(recording))
+    # Without the set point, whose samples may be damaged.
+    segments = [] if history is None else find_segments(history, None, recording.row.duration)
     states = part(lambda: list(recording.changes(STATE.name)) if _has(recording, STATE.name) else []) or []
-    armed = [state for state in states if state.get("armed")]
     seen = part(lambda: _first_seen(recording, states)) or {}
     events = part(lambda: read_events(recording, EVENTS_MAX)) or []
     deepest = None if depth is None else _deepest(depth)
@@ -54,8 +59,8 @@ def summarise(recording: Recording) -> SessionSummary:
     return SessionSummary(
         depth=None if deepest is None else round(deepest[1], 3),
         armed=0.0 if history is None else sum(span.end - max(span.start, 0) for span in history.armed),
-        controllers=part(lambda: _names(map(_controller, armed))) or [],
-        modes=_names(state.get("mode") for state in armed),
+        controllers=_names(segment.title or segment.controller for segment in segments),
+        modes=_names(segment.mode for segment in segments),
         cards=_names(seen),
         mission=part(lambda: _mission(recording)) or "",
         alarms=sum(event.severity == "alarm" for event in events),
@@ -72,16 +77,6 @@ def _has(recording: Recording, topic: str) -> bool:
 def _names(names: Iterable[object]) -> list[str]:
     """Return the first different names in their order."""
     return list(islice(dict.fromkeys(str(name) for name in names if name), NAMES_MAX))
-
-
-def _controller(state: Mapping[str, Any]) -> str:
-    """Return the title of the controller that holds the depth; empty where nobody does."""
-    loop = depth_loop(state)
-    if state.get("mode") != "automatic" and not loop.get("on"):
-        return ""
-    name = loop.get("controller", "")
-    titles = {known.get("name"): known.get("title") for known in loop.get("controllers", ())}
-    return str(titles.get(name) or name)
 
 
 def _first_seen(recording: Recording, states: list[dict[str, Any]]) -> dict[str, float]:

@@ -25,6 +25,7 @@ from robot_runtime.contract.topics import FILM
 from server.platform.errors import ApiError
 from server.platform.models import Chunk, SessionRow
 from server.platform.store import Reader
+from server.recording.session import find_row
 
 if TYPE_CHECKING:
     import numpy as np
@@ -69,6 +70,11 @@ class Recording:
         self.topics: Mapping[str, dict[str, Any]] = json.loads(row.topics)
         """Descriptions by topic, as `chunks.describe_topics` wrote them at the recording."""
         self._store = store
+
+    @classmethod
+    def open(cls, store: Reader, session: int) -> "Recording":
+        """Return the recording of a session, also from the bin. Raise UnknownSessionError, StoreError."""
+        return cls(store, find_row(store, session))
 
     @contextmanager
     def read(self) -> Iterator[Session]:

@@ -8,13 +8,12 @@ from server.http.dependencies import Provided
 from server.http.operations import Identifier
 from server.library.content import Recording
 from server.platform.store import Store
-from server.recording.session import find_row
 
 SECONDS_MAX = 1e9
 
 
 def _open(store: Provided[Store], session: Identifier) -> Recording:
-    return Recording(store, find_row(store, session))
+    return Recording.open(store, session)
 
 
 OpenRecording = Annotated[Recording, Depends(_open)]

@@ -194,7 +194,7 @@ class Hours:
         return session
 
     def _recording(self) -> Recording:
-        return Recording(self.store, find_row(self.store, self._session))
+        return Recording.open(self.store, self._session)
 
     @property
     def _end(self) -> float:
@@ -280,7 +280,7 @@ class Hours:
         prepare(other)
         with closing(Store(other.database)) as store:
             number = asyncio.run(Imports(other, store).take(path))
-            imported = Checksums.of(Recording(store, find_row(store, number)))
+            imported = Checksums.of(Recording.open(store, number))
         self.report.insist(imported == self._sent, "the imported archive has other samples")
 
     def _judge_comparison(self) -> None:

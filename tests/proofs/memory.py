@@ -27,7 +27,7 @@ from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.transport import replay_cache
-from server.analysis import comparer, samples
+from server.analysis import result_cache, samples
 from server.analysis.comparer import Comparer
 from server.analysis.schemas import ComparisonQuery
 from server.platform.settings import DataFolder, Settings, make_folders
@@ -118,7 +118,7 @@ def load_runtime(minutes: int) -> dict[str, list[float]]:
 def load_server(minutes: int) -> dict[str, list[float]]:
     """MB of each kind after each minute of messages and of what people do."""
     hub.HISTORY_TOPIC_BYTES = samples.CACHE_BYTES = replay_cache.BYTES_MAX = SMALL_BYTES
-    comparer.RESULTS_MAX = SMALL_RESULTS
+    result_cache.RESULTS_MAX = SMALL_RESULTS
     hub.ROWS_MESSAGES = hub.DOCUMENTS_MESSAGES = SMALL_MESSAGES
     scales = Scales()
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:

@@ -25,7 +25,6 @@ from server.openapi import main as print_openapi
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.managed_process import ProcessCommand
-from server.recording.session import find_row
 from server.stream.bridge import Bridge
 from server.stream.budget import Budgets
 from server.stream.hub import Hub
@@ -357,7 +356,7 @@ async def test_a_session_from_start_to_download(settings: Settings, served: Serv
     store = served.get(Store)
 
     def counts() -> dict[str, int]:
-        return Recording(store, find_row(store, session["id"])).counts()
+        return Recording.open(store, session["id"]).counts()
 
     await until(lambda: counts().get("depth") == 10, "the samples")
     half = await exported(served, session["id"])

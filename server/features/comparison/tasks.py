@@ -72,7 +72,7 @@ def pair(comparer: Comparer, query: str) -> bytes:
 
 def summary(comparer: Comparer, query: str) -> bytes:
     """Return the summary of the session of this number, as JSON."""
-    return summarise(comparer.open(json.loads(query))).model_dump_json().encode()
+    return summarise(comparer.reader, json.loads(query)).model_dump_json().encode()
 
 
 TASKS: Mapping[str, Task] = {

@@ -7,12 +7,11 @@ from robot_runtime.experiments.identification.streams import SessionStreams
 from server.library.content import Recording, reading_content
 from server.metrics.series import Floats
 from server.platform.store import Reader
-from server.recording.session import find_row
 
 
 def read_streams(store: Reader, session: int) -> SessionStreams:
     """Return the streams of a session. Raise UnknownSessionError, StoreError, RecordingError."""
-    recording = Recording(store, find_row(store, session))
+    recording = Recording.open(store, session)
     with reading_content(recording.row):
         motor, angles = _columns(recording, MOTOR.name, "angle", 4)
         inertial, rates = _columns(recording, IMU.name, "rate", 3)

@@ -3,7 +3,7 @@
 from typing import Annotated
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
-from fastapi import Depends, Query, Request
+from fastapi import Query, Request
 from fastapi.responses import Response
 from pydantic import Field
 
@@ -13,9 +13,10 @@ from server.http.heavy_requests import RecordingTurn, TooManyHeavyError
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 from server.library.catalogue import Catalogue
-from server.library.content import Recording, reading_content
+from server.library.content import reading_content
 from server.library.listing import PAGE, PAGE_MAX, Grouping, SessionSelection
 from server.library.missions import RecordedMission, read_missions
+from server.library.opening import SECONDS_MAX, Moment, OpenRecording
 from server.library.replay import HISTORY_MAX, read_blocks_between
 from server.library.retention import RetentionWorker
 from server.library.schemas import (
@@ -30,9 +31,8 @@ from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.schemas import Session
-from server.recording.session import UnknownSessionError, find_row
+from server.recording.session import UnknownSessionError
 
-SECONDS_MAX = 1e9
 LEFT_OUT = "Left-Out"
 """The header that says how many samples, or missions, are not in the answer."""
 TOTAL_COUNT = "Total-Count"
@@ -41,14 +41,6 @@ TOTAL_COUNT = "Total-Count"
 router = Operations(prefix="/api", tags=["sessions"])
 
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
-
-
-def _open(store: Provided[Store], session: Identifier) -> Recording:
-    return Recording(store, find_row(store, session))
-
-
-OpenRecording = Annotated[Recording, Depends(_open)]
-"""The recording of the session in the path, also from the bin."""
 
 
 class ListQuery(SessionSelection):
@@ -173,9 +165,7 @@ def get_thumbnail(
     _: RecordingTurn,
     request: Request,
     recording: OpenRecording,
-    time: Annotated[
-        float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False, description="s since the start")
-    ],
+    time: Moment,
 ) -> Response:
     """Return the first small camera picture from this time on.
 

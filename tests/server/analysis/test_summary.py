@@ -8,8 +8,8 @@ from sqlalchemy import text
 from robot_runtime.contract import documents
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents
-from server.analysis.comparer import Comparer
 from server.analysis.session_name import name_from
+from server.analysis.session_reader import SessionReader
 from server.analysis.summary import summarise
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -28,7 +28,7 @@ def events(*severities: documents.Severity) -> Block:
 
 def summarised(store: Store, settings: Settings, blocks: list[Block]) -> SessionSummary:
     """Return the summary of a session of these blocks."""
-    return summarise(Comparer(store).open(record(store, settings, blocks)))
+    return summarise(SessionReader(store), record(store, settings, blocks))
 
 
 def test_a_summary_says_how_deep_how_long_by_what_and_what_was_seen(store: Store, settings: Settings) -> None:
@@ -57,7 +57,7 @@ def test_damaged_chunks_cost_what_they_hold_alone(store: Store, settings: Settin
     session = record(store, settings, dive())
     damage = text("UPDATE chunk SET data = x'00' WHERE topic = 'depth'")
     asyncio.run(store.write(lambda connection: connection.execute(damage)))
-    summary = summarise(Comparer(store).open(session))
+    summary = summarise(SessionReader(store), session)
     assert (summary.damaged, summary.depth, summary.controllers) == (True, None, ["pid"])
 
 

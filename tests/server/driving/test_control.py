@@ -6,7 +6,6 @@ from robot_runtime.clock import SimulatedClock
 from server.driving.arbiter import ControlArbiter
 from server.library.content import Recording
 from server.platform.store import Store
-from server.recording.session import find_row
 from tests.server.blocks import state_block
 from tests.server.driving.pages import free, open_page
 from tests.server.serving import Served, next_text
@@ -27,7 +26,7 @@ async def test_changes_of_control_are_recorded_in_the_session(served: Served) ->
     (await served.api.post("/control/take")).raise_for_status()
     (await served.api.post(f"/sessions/{session}/stop")).raise_for_status()
     container = served.container
-    recording = Recording(container.services.get(Store), find_row(container.services.get(Store), session))
+    recording = Recording.open(container.services.get(Store), session)
     # The doctor's words come when its look at the start is done.
     texts = [document["text"] for document in recording.documents("notice") if document["kind"] == "control"]
     shell = "“the shell of this computer”"

@@ -160,7 +160,7 @@ async def test_a_session_lists_its_contents(settings: Settings, served: Served) 
     store = served.get(Store)
 
     def counts() -> dict[str, int]:
-        return Recording(store, find_row(store, session)).counts()
+        return Recording.open(store, session).counts()
 
     await until(lambda: {"depth": 11, "thumbnail": 2}.items() <= counts().items(), "the samples")
     detail = (await served.api.get(f"/sessions/{session}")).json()

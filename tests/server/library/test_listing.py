@@ -29,7 +29,7 @@ from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.recorder import Recorder
-from server.recording.session import SessionStateError, find_row
+from server.recording.session import SessionStateError
 from tests.server.blocks import depth_block
 from tests.server.features.exports.recordings import STARTED_STEADY, record
 from tests.server.serving import Served
@@ -207,7 +207,7 @@ def test_an_answer_about_a_session_has_a_limit(store: Store, settings: Settings)
         assert len(shown) == SHOWN_MAX
         assert shown == sorted(shown)
         assert shown[0] == pytest.approx(0.001)
-    assert len(read_timeline(Recording(store, find_row(store, number))).markers) == SHOWN_MAX
+    assert len(read_timeline(Recording.open(store, number)).markers) == SHOWN_MAX
 
 
 def test_topics_of_a_million_columns_are_cut_off(store: Store, settings: Settings) -> None:
@@ -244,5 +244,5 @@ def test_chunks_whose_times_are_not_those_of_their_samples_are_read(
     shift = {"first_time": col(Chunk.first_time) + 60, "last_time": col(Chunk.last_time) + 60}
     execute(store, update(Chunk).values(shift))
     begin = STARTED_STEADY + start
-    blocks_between = read_blocks_between(Recording(store, find_row(store, number)), begin, begin + 1, history)
+    blocks_between = read_blocks_between(Recording.open(store, number), begin, begin + 1, history)
     assert blocks_between.left_out == 0

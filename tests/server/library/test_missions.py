@@ -10,7 +10,6 @@ from server.library.missions import MISSIONS_SHOWN, read_missions
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.recording.session import find_row
 from tests.server.analysis.dives import STARTED_STEADY, dive, record, record_dive
 from tests.server.library.missions import (
     DIVE_AT,
@@ -26,7 +25,7 @@ from tests.server.serving import serve
 def test_each_mission_is_told_with_its_document_end_and_starts(store: Store, settings: Settings) -> None:
     # A runtime that restarts counts from 1 again.
     session = record(store, settings, [*dive(), *mission_blocks(), *mission_blocks(shift=3.5)])
-    (first, second), left_out = read_missions(Recording(store, find_row(store, session)))
+    (first, second), left_out = read_missions(Recording.open(store, session))
     assert left_out == 0
     assert (first.start, first.end) == (DIVE_AT - STARTED_STEADY, MISSION_END - STARTED_STEADY)
     assert (first.mission.phase, first.mission.text) == ("failed", "Step 2.1, mark: It was at 0.20 m.")
@@ -42,9 +41,9 @@ def test_each_mission_is_told_with_its_document_end_and_starts(store: Store, set
 
 def test_a_recording_that_begins_in_a_mission_says_so(store: Store, settings: Settings) -> None:
     session = record(store, settings, [*dive(), *mission_blocks(first=1)[:-1]])
-    (mission,), _ = read_missions(Recording(store, find_row(store, session)))
+    (mission,), _ = read_missions(Recording.open(store, session))
     assert (mission.late, mission.document, mission.mission.phase) == (True, "", "paused")
-    assert read_missions(Recording(store, find_row(store, record(store, settings, dive())))) == ([], 0)
+    assert read_missions(Recording.open(store, record(store, settings, dive()))) == ([], 0)
 
 
 def test_an_answer_holds_the_first_missions_and_counts_the_others(
@@ -52,7 +51,7 @@ def test_an_answer_holds_the_first_missions_and_counts_the_others(
 ) -> None:
     count = MISSIONS_SHOWN + 3
     blocks = [block for number in range(count) for block in mission_blocks(number=number + 1)]
-    recording = Recording(store, find_row(store, record(store, settings, [*dive(), *blocks])))
+    recording = Recording.open(store, record(store, settings, [*dive(), *blocks]))
     shown, left_out = read_missions(recording)
     assert ([mission.mission.number for mission in shown], left_out) == ([*range(1, MISSIONS_SHOWN + 1)], 3)
     size = len(shown[0].model_dump_json())

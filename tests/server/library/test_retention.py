@@ -24,7 +24,7 @@ from server.platform.settings import Settings
 from server.platform.store import Store
 from server.platform.wall_clock import DAY
 from server.recording.recorder import Recorder
-from server.recording.session import REMOVING, find_row, new_row
+from server.recording.session import REMOVING, new_row
 from tests.server.blocks import depth_block, film_block
 from tests.server.waiting import SECONDS
 
@@ -259,7 +259,7 @@ async def test_where_space_is_short_the_oldest_films_go_before_any_session(
     gaps = keeper.gaps()
     assert gaps == [(2, "film", "removed", 50), (3, "film", "removed", 50)]
     for number, row in zip((1, 2, 3, 4), before, strict=True):
-        counts = Recording(store, find_row(store, number)).counts()
+        counts = Recording.open(store, number).counts()
         assert counts == {"depth": 300} | ({} if number in (2, 3) else {"film": 50})
         now = keeper.catalogue.find(number)
         assert now.samples == sum(counts.values())

@@ -21,7 +21,6 @@ from server.platform import schema
 from server.platform.database_copies import COPIES_MOST, copy_database
 from server.platform.settings import Settings, SetupError
 from server.platform.store import Store
-from server.recording.session import find_row
 from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
 
 Tables = dict[str, list[dict[str, Any]]]
@@ -139,7 +138,7 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
         )
         (topic,) = catalogue.detail(1).topics
         assert (topic.name, topic.count, topic.first, topic.last) == ("depth", 10, 0.0, pytest.approx(0.18))
-        assert b"".join(Recording(store, find_row(store, 1)).rows("depth")) == ROWS
+        assert b"".join(Recording.open(store, 1).rows("depth")) == ROWS
     with closing(sqlite3.connect(settings.data.database)) as database:
         assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)

@@ -149,7 +149,7 @@ async def test_of_very_many_pauses_the_longest_are_told(store: Store, settings: 
         recorder.add(film_block(number, start, key))
         await recorder.flush()
     await recorder.stop(session.id)
-    spans = describe_film(Recording(store, find_row(store, session.id))).spans
+    spans = describe_film(Recording.open(store, session.id)).spans
     assert len(spans) == (len(pauses) // 2) + 1
     assert all(later.start - earlier.end == pytest.approx(10.0) for earlier, later in pairwise(spans))
 
@@ -349,7 +349,7 @@ async def test_subtitles_say_the_values_of_their_moment(served: Served, tmp_path
     assert [number for _, number in read_film(mp4)] == list(range(COUNT))
     texts = texts_of(mp4)
     assert len(texts) == pytest.approx(COUNT / RATE / 0.5, abs=1)
-    recording = Recording(served.get(Store), find_row(served.get(Store), session))
+    recording = Recording.open(served.get(Store), session)
     times, columns = recording.columns("depth", ["depth"])
     first = next(iter(recording.film()))[0]
     for moment, text in texts:
