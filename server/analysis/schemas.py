@@ -15,7 +15,7 @@ from server.http.request_body import RequestBody
 from server.library.missions import MissionStepStart
 from server.library.timeline import Moment
 from server.metrics.figure import Figure, FigureMeaning
-from server.platform.models import IDENTIFIER_MAX
+from server.recording.schemas import SessionNumber
 
 if TYPE_CHECKING:
     from server.analysis.decimation import Envelope
@@ -31,7 +31,6 @@ DEFAULT_SIGNALS = ("depth.depth", "control.set_point", "control.error", "navigat
 SEGMENTS = r"^(\d+:\d+(,\d+:\d+)*)?$"
 """Chosen segments as a text: 7:2,9:1."""
 
-Identifier = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 SignalName = Annotated[str, Field(pattern=r"^[a-z_]{1,40}\.[a-z0-9_]{1,60}$")]
 
 
@@ -45,14 +44,14 @@ class TimeRange(RequestBody):
 class SegmentChoice(RequestBody):
     """A segment of a session."""
 
-    session: Identifier
+    session: SessionNumber
     segment: Annotated[int, Field(ge=1, le=SEGMENTS_MAX, description="from 1 on, in order of time")]
 
 
 class LinesQuery(RequestBody):
     """Sessions, their signals, and their alignment."""
 
-    sessions: Annotated[list[Identifier], Field(min_length=1, max_length=SESSIONS_MAX)]
+    sessions: Annotated[list[SessionNumber], Field(min_length=1, max_length=SESSIONS_MAX)]
     signals: Annotated[list[SignalName], Field(max_length=SIGNALS_MAX)]
     align: Align = Align()
     points: Annotated[int, Field(ge=10, le=10_000, description="columns of each line")] = 1000
@@ -85,7 +84,7 @@ class ComparisonQuery(LinesQuery):
 class StoryFiguresQuery(RequestBody):
     """A session, and the part of its time (s since its start) whose figures are wanted; all of it if null."""
 
-    session: Identifier
+    session: SessionNumber
     part: TimeRange | None = None
 
 

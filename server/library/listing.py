@@ -25,10 +25,10 @@ from server.library.schemas import (
     SessionGap,
     SessionGroup,
 )
-from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
+from server.platform.models import IDENTIFIER_MAX, BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
 from server.platform.searching import fold
 from server.platform.store import Reader
-from server.recording.schemas import Origin, Session, State
+from server.recording.schemas import Origin, Session, SessionNumber, State
 from server.recording.session import COLUMNS, HIDDEN, find_row, from_columns, from_row
 
 PAGE = 100
@@ -80,6 +80,24 @@ class SessionSelection(BaseModel):
     since: Annotated[AwareDatetime | None, Field(description="started then or later")] = None
     until: Annotated[AwareDatetime | None, Field(description="started before")] = None
     deleted: Annotated[bool, Field(description="those in the bin instead")] = False
+
+
+class ListQuery(SessionSelection):
+    """A part of the list of sessions."""
+
+    by: Grouping = "none"
+    before: Annotated[SessionNumber | None, Field(description="only sessions of lower numbers")] = None
+    skip: Annotated[
+        int, Field(ge=0, le=IDENTIFIER_MAX, description="sessions that are left out before the answer")
+    ] = 0
+    limit: Annotated[int, Field(ge=1, le=PAGE_MAX, description="sessions in the answer")] = PAGE
+
+
+class GroupsQuery(SessionSelection):
+    """Groups of sessions."""
+
+    by: Grouping
+    zone: Annotated[str, Field(max_length=60, description="whose days, such as Europe/Tallinn")] = "UTC"
 
 
 EVERY_SESSION = SessionSelection()

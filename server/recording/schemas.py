@@ -1,12 +1,15 @@
 """Schemas of a recorded session in the interface."""
 
 from datetime import datetime
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field
 
+from server.platform.models import IDENTIFIER_MAX
+
 State = Literal["recording", "complete", "interrupted"]
 GapKind = Literal["missed", "restarted", "not stored", "damaged", "removed"]
+SessionNumber = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 Origin = Literal["operator", "arming", "scenario", "simulated", "import"]
 
 

@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from server.http.request_body import RequestBody
 from server.platform.csv_cells import Spreadsheet
-from server.platform.models import IDENTIFIER_MAX
+from server.recording.schemas import SessionNumber
 
 Compression = Literal["none", "zstd", "lz4"]
 Overlay = Literal["none", "subtitles", "lines"]
@@ -57,7 +57,7 @@ class ExportOptions(RequestBody):
 class NewExport(ExportOptions):
     """A new export."""
 
-    session: Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
+    session: SessionNumber
 
 
 class Job(BaseModel):

@@ -5,12 +5,10 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, Field
 
 from server.http.request_body import RequestBody
-from server.platform.models import IDENTIFIER_MAX
 from server.platform.runs import RUN_MEANING
+from server.recording.schemas import SessionNumber
 
 SESSIONS_MAX = 12
-
-SessionNumber = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 
 
 class IdentificationStart(RequestBody):

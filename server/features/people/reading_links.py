@@ -15,16 +15,15 @@ from server.http.sign_in.access import Access, LinkEndedError
 from server.http.sign_in.devices import DAY_SECONDS, Device, UnknownLinkError
 from server.http.sign_in.identity import IDENTITY, Caller
 from server.http.sign_in.policy import Need
-from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
 from server.platform.store import Store
+from server.recording.schemas import SessionNumber
 from server.recording.session import UnknownSessionError, find_row
 
 DAYS_MAX = 366
 NOT_MADE = {409: "The end is over, too many links, or the clock is not set"}
 
 router = Operations(prefix="/api/access", tags=["access"])
-SessionNumber = Annotated[int, Field(ge=1, le=IDENTIFIER_MAX)]
 
 
 class NewReadingLink(RequestBody):
@@ -76,7 +75,7 @@ async def make_reading_link(
 
 @router.operation("GET /reading-links", Need.OPERATOR)
 async def list_reading_links(
-    access: Provided[Access], session: Annotated[int, Query(ge=1, le=IDENTIFIER_MAX)]
+    access: Provided[Access], session: Annotated[SessionNumber, Query()]
 ) -> list[ReadingLink]:
     """List the reading links of a session, oldest first, with those that have ended by themselves."""
     return [_describe(access, link) for link in access.devices.links(session)]

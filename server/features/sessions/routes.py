@@ -5,7 +5,6 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from fastapi import Query, Request
 from fastapi.responses import Response
-from pydantic import Field
 
 from robot_runtime.contract.topics import THUMBNAIL
 from server.http.dependencies import Provided
@@ -14,7 +13,7 @@ from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 from server.library.catalogue import Catalogue
 from server.library.content import reading_content
-from server.library.listing import PAGE, PAGE_MAX, Grouping, SessionSelection
+from server.library.listing import GroupsQuery, ListQuery
 from server.library.missions import RecordedMission, read_missions
 from server.library.opening import SECONDS_MAX, Moment, OpenRecording
 from server.library.replay import HISTORY_MAX, read_blocks_between
@@ -27,7 +26,6 @@ from server.library.schemas import (
 from server.library.storage import Storage, measure
 from server.library.timeline import Timeline, read_timeline
 from server.platform.errors import ConflictError, InvalidError, NotFoundError
-from server.platform.models import IDENTIFIER_MAX
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.schemas import Session
@@ -41,26 +39,6 @@ TOTAL_COUNT = "Total-Count"
 router = Operations(prefix="/api", tags=["sessions"])
 
 Seconds = Annotated[float, Query(ge=-SECONDS_MAX, le=SECONDS_MAX, allow_inf_nan=False)]
-
-
-class ListQuery(SessionSelection):
-    """A part of the list of sessions."""
-
-    by: Grouping = "none"
-    before: Annotated[
-        int | None, Field(ge=1, le=IDENTIFIER_MAX, description="only sessions of lower numbers")
-    ] = None
-    skip: Annotated[
-        int, Field(ge=0, le=IDENTIFIER_MAX, description="sessions that are left out before the answer")
-    ] = 0
-    limit: Annotated[int, Field(ge=1, le=PAGE_MAX, description="sessions in the answer")] = PAGE
-
-
-class GroupsQuery(SessionSelection):
-    """Groups of sessions."""
-
-    by: Grouping
-    zone: Annotated[str, Field(max_length=60, description="whose days, such as Europe/Tallinn")] = "UTC"
 
 
 @router.operation("GET /sessions", Need.VIEWER)
