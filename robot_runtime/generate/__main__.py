@@ -7,7 +7,6 @@ from pathlib import Path
 from robot_runtime.generate import cpp, hardware, json_schema, reference, typescript
 from robot_runtime.generate.craft import craft_page
 from robot_runtime.generate.hull import hull_page
-from robot_runtime.generate.hull_drawing import hull_drawing
 from robot_runtime.generate.missions import missions_page
 from robot_runtime.generate.trim import trim_page
 
@@ -38,7 +37,6 @@ def main() -> int:
         "docs/reference/packets.md": reference.packets_page(),
         "docs/reference/parameters.md": reference.parameters_page(),
         "docs/reference/topics.md": reference.topics_page(),
-        "docs/pictures/hull.svg": hull_drawing(),
         "docs/run/hardware/hull.md": hull_page(),
         "docs/run/hardware/parts.md": hardware.parts_page(),
         "docs/run/hardware/trim.md": trim_page(),

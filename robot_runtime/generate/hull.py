@@ -13,27 +13,9 @@ from robot_runtime.contract.hull import (
     weigh,
 )
 from robot_runtime.contract.wiring import BATTERY_MIN
-from robot_runtime.generate.markdown import page, table
+from robot_runtime.generate.markdown import fill, page, table
 
 SOURCE = "robot_runtime/contract/hull.py and power_budget.py"
-INTRODUCTION = """\
-One hull that fits the numbers of the default [craft](../../reference/craft.md): it carries every part of
-the [wiring](wiring.md), floats by {share:.0f} %, and lies level. **Nobody has built it yet.** Its figures
-are computed, and most masses are assumed. Build it, weigh it, and correct it.
-
-[![The hull, cut and from above](../../pictures/hull.svg)](../../pictures/hull.svg)
-
-G is the centre of mass, B that of buoyancy. Dashed: what is hidden. The details are not to scale.
-
-A box, because nothing else of this length carries 3 kg: an ellipsoid of the same measures displaces only
-half.
-
-## Parts
-
-What holds water out, and what moves; [Parts](parts.md) has the electronics. Measures are in mm. A maker's
-part is named where its data sheet was used; any with the same figures will do. A price is given only with its
-day, so there are few.
-"""
 PARTS = (
     ("tray", "PVC-U plates of 8 mm, glued: 240 x 120 x 92, edges broken by 6"),
     ("lid", "cast acrylic, 8 mm, clear: the LED is seen through it"),
@@ -63,55 +45,6 @@ PARTS = (
     ("motor (4)", "beside its shaft, under the frame. Pololu micro metal gear motor 150:1 HP 6 V"),
 )  # fmt: skip
 """Name (with how many, if not one) and figures of the parts, in the order of the drawing's numbers."""
-PARTS_NOTE = """
-There is no gland for a cable: the robot has no tether, and each hole is one more that leaks. A fin's shaft
-is stainless, 4 mm, polished where the seals run.
-
-**Seals brake.** The budget takes {friction:.0f} mN·m for shaft, seals and gear; at its highest drive the
-motor has {torque:.0f} mN·m. Turn each shaft by hand, then run the fin check in air: a fin that stands
-still below a quarter of the drive is too stiff. Less squeeze, more grease.
-
-## Test it empty
-
-1. Lid on, vent open, all holes plugged. Draw 0.3 bar of vacuum at the vent, which presses as {depth:g} m
-   of water do, and close it. After a quarter of an hour at least 0.29 bar are left.
-2. Dry paper inside, a sinker below, an hour at {depth:g} m. The paper stays dry.
-3. Only then the electronics. Repeat step 1 each time the lid was off.
-
-At {depth:g} m the floor is stressed by {stress:.1f} MPa (PVC bears 50, and 10 for years), and lid and
-floor give way by {squeeze:.1f} mL. **Not deeper:** at 10 m it would be {deep_stress:.0f} MPa.
-
-## Weight
-
-Places are from the middle of the box. The ballast is what is missing to {mass:.0f} g.
-"""
-WEIGHT_NOTE = """
-| what follows | here | default craft |
-| --- | --- | --- |
-| displaces | {volume:.3f} L | {craft_volume:.3f} L |
-| mass with ballast | {kilograms:.3f} kg | {craft_mass:.3f} kg |
-| reserve in fresh water of 20 °C | **{reserve:.0f} g** | {craft_reserve:.0f} g |
-| centre of buoyancy above the centre of mass | {height:.1f} mm | {craft_height:.1f} mm |
-| length, width with bosses, height | 240, 130, 100 mm | 240, 130, 100 mm |
-
-Masses that are assumed may be wrong by a fifth, which is {uncertain:.0f} g in all. The ballast takes that
-up. Then [trim](trim.md): a computed reserve is none.
-
-## Power
-
-Currents are typical ones at 5 V, of the data sheets or assumed. *Nobody has measured them.*
-"""
-POWER_NOTE = """
-With regulators of {efficiency:.0f} % that is {electronics:.1f} W at the battery. A fin's power follows
-from the water's torque on its blade, the friction above, and the motor's data sheet.
-
-The pack holds {energy:.0f} Wh. A dive may use {usable:.0f} % of it: cold, age, and an end at 6.8 V take
-the rest.
-"""
-TIMES_NOTE = """
-All four motors stalled, and everything else: {worst:.1f} A at {low:g} V, below the fuse of {fuse:g} A.
-Plan half of a time until you have measured yours. A colder pack has less: at 5 °C about four fifths.
-"""
 
 
 def hull_page() -> str:
@@ -186,11 +119,7 @@ def hull_page() -> str:
     return page(
         "Hull",
         SOURCE,
-        INTRODUCTION.format(**values),
-        parts + PARTS_NOTE.format(**values),
-        weights + WEIGHT_NOTE.format(**values),
-        currents + POWER_NOTE.format(**values),
-        times + TIMES_NOTE.format(**values),
+        fill("hull", **values, parts=parts, weights=weights, currents=currents, times=times),
     )
 
 

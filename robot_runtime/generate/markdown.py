@@ -1,12 +1,21 @@
-"""Tables of the generated reference pages."""
+"""Texts and tables of the generated pages."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+PAGES = Path(__file__).with_name("pages")
+"""The texts of pages, with `{name}` for each number and table that comes from the code."""
 
 
 def page(title: str, source: str, *parts: str) -> str:
     """Return a reference page; `source` names the file that it is written from."""
     head = f"# {title}\n\n<!-- Written by `make generate` from {source}. Do not edit. -->\n"
     return "\n".join((head, *parts))
+
+
+def fill(name: str, **values: object) -> str:
+    """Return the text of this name with the values in it."""
+    return (PAGES / f"{name}.md.in").read_text(encoding="utf-8").format(**values)
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -13,8 +13,8 @@ from robot_runtime.contract.craft import Craft
 from robot_runtime.contract.wiring import PARTS
 from robot_runtime.generate.hull import PARTS as NUMBERED
 from robot_runtime.generate.hull import hull_page
-from robot_runtime.generate.hull_drawing import hull_drawing
 
+DRAWING = (Path(__file__).parents[2] / "docs/pictures/hull.svg").read_text(encoding="utf-8")
 SVG = "{http://www.w3.org/2000/svg}"
 MOTORS = (Path(__file__).parents[2] / "firmware/emulator/motors.c").read_text(encoding="utf-8")
 
@@ -68,7 +68,7 @@ def test_the_page_s_tables_add_up() -> None:
 
 
 def test_the_drawing_numbers_every_part_of_the_page() -> None:
-    drawing = ElementTree.fromstring(hull_drawing())
+    drawing = ElementTree.fromstring(DRAWING)
     texts = [text.text or "" for text in drawing.iter(f"{SVG}text")]
     numbers = {int(text) for text in texts if text.isdigit() and int(text) < 100}
     assert numbers == set(range(1, len(NUMBERED) + 1))
@@ -79,7 +79,7 @@ def test_the_drawing_numbers_every_part_of_the_page() -> None:
 
 
 def test_nothing_of_the_drawing_is_cut_off() -> None:
-    drawing = ElementTree.fromstring(hull_drawing())
+    drawing = ElementTree.fromstring(DRAWING)
     width, height = (float(drawing.get(name, "")) for name in ("width", "height"))
     for box in drawing.iter(f"{SVG}rect"):
         if box.get("x") is not None and not (box.get("x") or "").startswith("-"):
@@ -118,4 +118,4 @@ def test_the_fuse_bears_four_stalled_motors() -> None:
 def test_the_boss_lies_as_the_fin_s_shaft() -> None:
     """Square to the fin at angle 0: 30° off the side, as parts and drawing say."""
     assert Craft().fin_mount == pytest.approx(radians(30), abs=1e-6)
-    assert "rotate(60)" in hull_drawing()
+    assert "rotate(60)" in DRAWING
