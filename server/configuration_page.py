@@ -11,19 +11,11 @@ from dataclasses import MISSING, fields
 
 from robot_runtime.config import Config
 from robot_runtime.contract.hints import Hint, read_fields
-from robot_runtime.generate.markdown import page, table
+from robot_runtime.generate.markdown import fill, page, table
 from server.feature import list_features
 from server.platform.server_config import ServerConfig
 
 SOURCE = "the classes of the sections and the comments of robot.toml"
-INTRODUCTION = """\
-`robot.toml` holds everything about one robot that is not code. An entry that is left out has its default.
-An entry that is not known here is refused with its name. [Configure](../run/configure.md) says how to
-change it.
-
-`[features]` switches the optional parts of the server on and off, by name: `identification = false`. What is
-off is not loaded, and what it offers is not there.
-"""
 TABLES = {
     "gains": "gains of each controller; [Parameters](parameters.md) lists them",
     "actions": "set point (m) while a colour or marker is seen",
@@ -41,7 +33,7 @@ def configuration_page(robot_toml: str) -> str:
     Raise ValueError where an entry has no comment in `robot_toml`.
     """
     meanings = read_comments(robot_toml)
-    parts = [INTRODUCTION]
+    parts = [fill("configuration")]
     for name, cls in list_sections().items():
         parts += [f"## `[{name}]`\n", " ".join((cls.__doc__ or "").split()) + "\n"]
         parts.append(table(("entry", "value", "default", "meaning"), _rows(cls, name, cls(), meanings)))

@@ -5,41 +5,9 @@ from typing import Any
 
 from robot_runtime.contract.craft import Craft, SensorQuality
 from robot_runtime.contract.hints import Hint, read_fields
-from robot_runtime.generate.markdown import page, table
+from robot_runtime.generate.markdown import fill, page, table
 
 SOURCE = "robot_runtime/contract/craft.py"
-INTRODUCTION = """\
-A craft file holds the physical numbers of one robot. Simulator, scenarios and the model-based controller take
-it. [Identify](../use/identify.md) says how one is made and adopted.
-
-```toml
-title = "Turtle 2"
-origin = "weighed on 3 March; drag and thrust fitted to sessions 12 and 14"
-
-[craft]
-mass = 2.4
-buoyancy = 1.008
-
-[craft.accelerometer]
-noise = 0.021
-```
-
-An entry that is left out is the default's, also in a sensor's table. An entry that is not known, or out of
-its range, is refused with its name. The file of the robot is named by `[craft] file` in `robot.toml`; without
-a name it is the adopted one, `craft.toml` in the data folder, and without that the default craft. A scenario
-with `craft = "robot"` has that craft's hull, and its model-based controller knows it.
-"""
-ORIGINS = """\
-*Published* numbers are from the robot's own published code. *Assumed* ones are estimates, since nobody
-published them. The spread is where the number of a real robot is expected; [identify](../use/identify.md)
-replaces most of them by measured ones.
-
-The default's numbers fit together: its hull has the volume that it must displace, its inertia is that of this
-hull, and its added mass lies between those of the smallest and the largest body of this size.
-"""
-SENSORS = """\
-Each is a table. `pressure` is in Pa, `gyroscope` in rad/s, `accelerometer` in m/s², `encoder` in rad.
-"""
 _ENTRIES = {
     "rate": "Hz of new readings, at most 200",
     "latency": "s from input to reading, in steps of 5 ms",
@@ -82,15 +50,12 @@ def craft_page() -> str:
     return page(
         "Craft",
         SOURCE,
-        INTRODUCTION,
-        "## `[craft]`\n",
-        table(("entry", "range", "default", "unit", "meaning"), rows),
-        "## Where the numbers come from\n",
-        ORIGINS,
-        table(("entry", "default", "origin", "spread"), origins),
-        "## Sensors\n",
-        SENSORS,
-        table(("entry", "meaning", *(f"`{name}`" for name in sensors)), defaults),
+        fill(
+            "craft",
+            entries=table(("entry", "range", "default", "unit", "meaning"), rows),
+            origins=table(("entry", "default", "origin", "spread"), origins),
+            sensors=table(("entry", "meaning", *(f"`{name}`" for name in sensors)), defaults),
+        ),
     )
 
 

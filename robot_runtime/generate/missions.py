@@ -8,18 +8,12 @@ from dataclasses import MISSING, Field, fields
 from robot_runtime.contract.hints import read_fields
 from robot_runtime.contract.missions import LEVELS_MAX, NODES_MAX
 from robot_runtime.contract.toml_text import BYTES_MAX
-from robot_runtime.generate.markdown import page, table
+from robot_runtime.generate.markdown import fill, page, table
 from robot_runtime.generate.reference import describe_type
 from robot_runtime.missions.document import DESCRIPTION_MAX, TITLE_MAX
 from robot_runtime.missions.leaf import NODES, NOTE_MAX, Branch, Leaf, MissionNode
 
 SOURCE = "the classes of the steps (robot_runtime/missions)"
-INTRODUCTION = f"""\
-A mission is a TOML document of at most {BYTES_MAX // 1000} kB. It is read strictly: an entry that is not
-known is a problem, and all problems are told at once, each with its step. A step's place counts from 1 along
-the branches: 3.1.2 is the second step of the first step of the third. [Missions](../use/missions.md) says how
-to write, try and start one; [Add a leaf](../develop/add-a-leaf.md) how to add a step.
-"""
 DOCUMENT = (
     ("`format`", "1", "required"),
     ("`name`", "1 to 60 small letters, digits, - and _; it names the file", "required"),
@@ -37,34 +31,24 @@ LIMITS = (
     ("`battery`", "V", "it ends when the battery stays below this; it needs a battery that is measured"),
     ("`unwatched`", "s", "it ends when no operator's page was open for so long"),
 )
-LIMITS_INTRODUCTION = """\
-A document only tightens the limits of [`[missions]` in `robot.toml`](configuration.md#missions). They are
-checked at every tick of the control loop, beside the steps.
-"""
-STEPS = f"""\
-`do` names the step. A branch has its steps in `steps`, a list of tables. Each step may have a `note`, a
-remark of at most {NOTE_MAX} characters. A mission has at most {NODES_MAX} steps with those of the missions
-that it calls, and at most {LEVELS_MAX} levels. Steps that run side by side must not steer the same: depth,
-heading or course. A [swim](#swim) without `yaw` leaves the heading alone.
-"""
 
 
 def missions_page() -> str:
     """Return the whole text of missions.md."""
     leaves = [cls for cls in NODES.values() if issubclass(cls, Leaf)]
     branches = [cls for cls in NODES.values() if issubclass(cls, Branch)]
-    parts = [
-        INTRODUCTION,
-        "## The document\n",
-        table(("entry", "content", "without it"), DOCUMENT),
-        "## Limits\n",
-        LIMITS_INTRODUCTION,
-        table(("in `[limits]`", "unit", "meaning"), LIMITS),
-        "## Steps\n",
-        STEPS,
-        table(("leaf", "steers", "meaning"), map(_leaf_row, leaves)),
-        table(("branch", "steps", "meaning"), map(_branch_row, branches)),
-    ]
+    text = fill(
+        "missions",
+        kilobytes=BYTES_MAX // 1000,
+        note=NOTE_MAX,
+        nodes=NODES_MAX,
+        levels=LEVELS_MAX,
+        document=table(("entry", "content", "without it"), DOCUMENT),
+        limits=table(("in `[limits]`", "unit", "meaning"), LIMITS),
+        leaves=table(("leaf", "steers", "meaning"), map(_leaf_row, leaves)),
+        branches=table(("branch", "steps", "meaning"), map(_branch_row, branches)),
+    )
+    parts = [text]
     for cls in (*leaves, *branches):
         parts += [f"## {cls.do}\n", f"{_meaning(cls)}\n"]
         if rows := list(_field_rows(cls)):

@@ -16,97 +16,23 @@ from robot_runtime.contract.topics import TOPICS, AnyTopic, Kind
 from robot_runtime.control.faults import ROBOT_FAULTS, FaultRule
 from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.core import Core
-from robot_runtime.generate.markdown import page, table
+from robot_runtime.generate.markdown import fill, page, table
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.vision.node import VisionNode
 
 COMMANDS_SOURCE = "robot_runtime/contract/commands.py"
-COMMANDS_INTRODUCTION = """\
-Programs and the page send a command as `POST /api/robot/commands/NAME` with its fields as a JSON object;
-fields that are optional may be left out. STOP has a faster way of its own, `POST /api/robot/stop`, and is
-never refused. A command whose column *HTTP* is empty is sent by the server and by scenarios only. Scenarios
-name a command in `do`. What a command changes about parameters is noted in their history, with the person who
-sent it, and can be undone. While an experiment measures a loop, commands that would disturb it are refused.
-
-The runtime checks every command again and answers why it refuses one. Between server and runtime a command
-travels as a Zenoh query to `command/NAME`.
-"""
 TOPICS_SOURCE = "robot_runtime/contract/topics.py"
-TOPICS_INTRODUCTION = """\
-A topic is a stream of samples that one process sends and the others receive over Zenoh; the page receives it
-on the [live socket](live-socket.md). *Rows* are fixed binary records, *documents* are JSON objects, a
-*picture* is one JPEG file. A page that connects receives the last minute of rows, the documents of the last
-ten minutes, and of *newest only* topics the newest document. *Lines* are shown one by one to a person, and
-are the log of an MCAP export. Every sample has a time in s of the steady clock.
-[The serial link's packets](packets.md) are topics, too.
-"""
 EVENTS_SOURCE = "robot_runtime/contract/published_events.py"
-EVENTS_INTRODUCTION = """\
-Each event is one JSON object, which MQTT carries at `mucat/ROBOT/event/EVENT`.
-[Events](../use/events.md) says how they are switched on. The JSON Schema is
-`robot_runtime/contract/published_events.schema.json`.
-"""
-EVENTS_RULES = """\
-## Delivery
-
-An event is sent at least once: `run` and `number` tell a repetition. Up to 200 wait while the other end is
-away; further ones are lost and counted on **System**. At a start of the server, active alarms and a resumed
-recording are sent again; what ended while the server was down is not sent. The robot never waits for a
-broker.
-
-| | |
-|---|---|
-| protocol | MQTT 3.1.1, quality of service 1 |
-| accepted by | the broker's acknowledgement |
-| again after a failure | 1 s to 60 s |
-| longest wait | 5 s to connect |
-| end of the server | waits up to 2 s |
-
-## Retained topics
-
-A program that connects to the broker finds these at once.
-
-| topic | value |
-|---|---|
-| `mucat/ROBOT/status` | `online` or `offline`, plain text; `offline` by the broker 45 s after the last sign |
-| `mucat/ROBOT/alarms` | a list of the active alarms, as in [state](topics.md#state) |
-| `mucat/ROBOT/session` | `id` and `name` of the session that records, else `null` |
-"""
 PACKETS_SOURCE = "robot_runtime/contract/packets/definitions.py"
-PACKETS_INTRODUCTION = f"""\
-A message is the packet's type (one byte), then its fields, little-endian and without gaps. [The serial
-link](link.md) says how messages travel in frames of at most {FRAME_BYTES_MAX} bytes. A *reliable* packet is
-repeated until it is acknowledged. The definitions of this version have the hash `{DEFINITIONS_HASH:08x}`;
-both ends compare it.
-"""
 FAULTS_SOURCE = "robot_runtime/control/transitions.py and faults.py"
-STATES_INTRODUCTION = """\
-The supervisor is always in one of five states. It starts in `disarmed`. A fault is a condition that the
-runtime detects by itself. [Safety](safety.md) explains both and says what the chip does alone.
-"""
-FAULTS_INTRODUCTION = """\
-The runtime checks these at least ten times a second, and at each message of the board. *Within* is
-the time from the fault to the action, on a line of 115200 baud or more. *All-stop* sends STOP to the board
-and no command after it; the robot floats up. The alarm stays until the fault is over and acknowledged.
-*Consequences* are the faults that follow from it. Each is an alarm of its own, with its action and its event;
-the page shows it beneath its cause.
-"""
 PARAMETERS_SOURCE = "the parameter registry (robot_runtime/parameters)"
-PARAMETERS_INTRODUCTION = """\
-These values may change while the robot runs: on the page under Tune, or with `PATCH /api/parameters`.
-[Tune](../use/tune.md#change-parameters) says how, and how to undo a change. A gain's name is
-`LOOP.CONTROLLER.GAIN`.
-
-The default is that of a `robot.toml` that does not name the value. In the running robot a parameter's default
-is its value at the start of the runtime.
-"""
 
 
 def commands_page() -> str:
     """Return the whole text of commands.md."""
     head = ("command", "HTTP", "needs", "scenarios", "history", "during an experiment")
-    parts = [COMMANDS_INTRODUCTION, table(head, map(_command_row, COMMANDS.values()))]
+    parts = [fill("commands"), table(head, map(_command_row, COMMANDS.values()))]
     for name, cls in COMMANDS.items():
         parts += [f"## {name}\n", f"{_one_line(cls)}\n"]
         if rows := list(_command_fields(cls)):
@@ -158,7 +84,7 @@ def describe_type(hint: Hint) -> str:
 def topics_page() -> str:
     """Return the whole text of topics.md."""
     head = ("topic", "number", "kind", "sender", "recorded", "", "meaning")
-    parts = [TOPICS_INTRODUCTION, table(head, map(_topic_row, TOPICS))]
+    parts = [fill("topics"), table(head, map(_topic_row, TOPICS))]
     for topic in TOPICS:
         if topic.kind in (Kind.ROWS, Kind.DOCUMENTS):
             parts += [f"## {topic.name}\n", f"{_one_line(topic.record)}\n"]
@@ -195,16 +121,13 @@ def _topic_fields(record: type[Record] | type[Document] | type[PublishedEvent]) 
 def events_page() -> str:
     """Return the whole text of events.md."""
     rows = [*_topic_fields(PublishedEvent)]
-    fields_table = table(("field", "type", "meaning"), rows)
-    return page("Events", EVENTS_SOURCE, EVENTS_INTRODUCTION, "## Fields\n", fields_table, EVENTS_RULES)
+    return page("Events", EVENTS_SOURCE, fill("events", fields=table(("field", "type", "meaning"), rows)))
 
 
 def packets_page() -> str:
     """Return the whole text of packets.md."""
-    parts = [
-        PACKETS_INTRODUCTION,
-        table(("type", "packet", "bytes", "reliable"), map(_packet_row, PACKETS.values())),
-    ]
+    packets = table(("type", "packet", "bytes", "reliable"), map(_packet_row, PACKETS.values()))
+    parts = [fill("packets", packets=packets, frame=FRAME_BYTES_MAX, definitions=DEFINITIONS_HASH)]
     for packet in PACKETS.values():
         parts += [f"## {packet.__name__}\n", f"`0x{packet.type:02X}`. {_one_line(packet)}\n"]
         rows = [_number_row(name, wire) for name, wire in packet.wires.items()]
@@ -237,27 +160,19 @@ def _text_row(name: str, text: Text) -> tuple[str, ...]:
 
 def faults_page() -> str:
     """Return the whole text of faults.md."""
-    return page(
-        "States and faults",
-        FAULTS_SOURCE,
-        STATES_INTRODUCTION,
-        "## States\n",
-        _states(),
-        "## Transitions\n",
-        table(
-            ("from", "trigger", "to", "why"),
-            (
-                (f"`{transition.before}`", transition.trigger, f"`{transition.after}`", transition.why)
-                for transition in TRANSITIONS
-            ),
-        ),
-        "## Faults\n",
-        FAULTS_INTRODUCTION,
-        table(
-            ("fault", "within", "action", "alarm", "message", "consequences"),
-            (_fault_row(name, fault) for name, fault in ROBOT_FAULTS.items()),
+    transitions = table(
+        ("from", "trigger", "to", "why"),
+        (
+            (f"`{transition.before}`", transition.trigger, f"`{transition.after}`", transition.why)
+            for transition in TRANSITIONS
         ),
     )
+    faults = table(
+        ("fault", "within", "action", "alarm", "message", "consequences"),
+        (_fault_row(name, fault) for name, fault in ROBOT_FAULTS.items()),
+    )
+    text = fill("faults", states=_states(), transitions=transitions, faults=faults)
+    return page("States and faults", FAULTS_SOURCE, text)
 
 
 def _states() -> str:
@@ -279,12 +194,8 @@ def _fault_row(name: str, fault: FaultRule) -> tuple[str, ...]:
 def parameters_page() -> str:
     """Return the whole text of parameters.md."""
     rows = map(_parameter_row, _registered())
-    return page(
-        "Parameters",
-        PARAMETERS_SOURCE,
-        PARAMETERS_INTRODUCTION,
-        table(("parameter", "range", "default", "meaning"), rows),
-    )
+    parameters = table(("parameter", "range", "default", "meaning"), rows)
+    return page("Parameters", PARAMETERS_SOURCE, fill("parameters", parameters=parameters))
 
 
 def _registered() -> list[TunableParameter]:

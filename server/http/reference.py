@@ -3,50 +3,12 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
-from robot_runtime.generate.markdown import page, table
+from robot_runtime.generate.markdown import fill, page, table
 from server.http.sign_in.policy import DECLARED
 
 Schema = Mapping[str, Any]
 
 SOURCE = "the server's OpenAPI document"
-INTRODUCTION = """\
-The page uses nothing else: a program can do what the page does. A program sends a token, see
-[Access](../run/access.md#browsers-programs-the-shell). The running server has this description as OpenAPI at
-`/api/openapi.json`, with the ways to sign in and examples of bodies; `info.version` is that of the software.
-A query parameter or a field that an operation does not know is refused with 422. The live stream is a
-WebSocket at `/api/live`: [The live socket](live-socket.md).
-
-Times are in s, lengths in m and angles in rad, unless a field says otherwise.
-
-| needs | the caller |
-| --- | --- |
-| nothing | anybody who reaches the server |
-| viewer | is signed in |
-| operator | is signed in as an operator |
-| control | is an operator who has control of the robot |
-| administer | is a browser of an operator who confirmed or signed in lately, or a token of this scope |
-
-## Errors
-
-An error is `{"detail": "..."}`: what happened, why, what to do. Where entries of a document or a request
-are not valid, `problems` has each of them with its path, see [EntryProblem](#entryproblem). Where a browser
-must confirm first, `kind` is `confirmation`.
-
-| status | reason |
-| --- | --- |
-| 401 | not signed in |
-| 403 | signed in, but not allowed; or a foreign Host or Origin |
-| 404 | no such thing, or no such address |
-| 405 | the address has other methods, which `Allow` names |
-| 409 | refused at present |
-| 413 | a body of more than 64 KiB, or without its length; imports may be larger |
-| 422 | not valid |
-| 423 | only for the page or program that has control |
-| 429 | a wrong pairing code was tried a moment ago; or too many requests of this device or address at once |
-| 503 | a part that is needed does not run |
-| 504 | the runtime did not answer within 2 s |
-| 507 | the disk is too full |
-"""
 
 
 def http_page(document: Schema) -> str:
@@ -56,7 +18,7 @@ def http_page(document: Schema) -> str:
         for path, methods in document["paths"].items()
         for method, operation in methods.items()
     ]
-    parts = [INTRODUCTION]
+    parts = [fill("http")]
     for tag in dict.fromkeys(tag for _, operation in operations for tag in operation["tags"]):
         rows = [_row(name, operation) for name, operation in operations if tag in operation["tags"]]
         parts += [f"## {tag[0].upper()}{tag[1:]}\n"]
