@@ -153,6 +153,20 @@ describe('ChartTime', () => {
     expect(time.view(10, 1005).seconds).toBe(10);
   });
 
+  it('has its cursor on a moment, also one that is not shown, and says on which', () => {
+    const time = new ChartTime();
+    expect(time.moment(1000)).toBeNull();
+    time.point(990, 1000);
+    expect([time.ago, time.moment(1000)]).toEqual([10, 990]);
+    time.point(1003, 1000);
+    expect([time.ago, time.moment(1000)]).toEqual([-3, 1003]);
+    time.pause(1000);
+    time.point(980, 1040);
+    expect([time.ago, time.moment(1040)]).toEqual([20, 980]);
+    time.point(null, 1040);
+    expect(time.moment(1040)).toBeNull();
+  });
+
   it('has nothing to hold while no time is known', () => {
     const time = new ChartTime();
     time.pause(NaN);

@@ -109,6 +109,29 @@ def test_a_replay_is_sought_on_its_depth_profile(page: Page, dives: DiveSite) ->
     expect(page).to_have_url(re.compile(r"#/replay/1\?at=12\.2$"))
 
 
+def test_a_moment_is_looked_at_in_curve_and_charts_of_a_replay_alike(page: Page, dives: DiveSite) -> None:
+    page.goto(f"{dives.url}/#/replay/1?at=20")
+    slider = page.get_by_role("slider", name="Time since the start of the session")
+    chart = page.get_by_role("slider", name=re.compile("^Cursor in Depth and set point"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("^00:20, "))
+    expect(chart).to_have_attribute("aria-valuetext", re.compile("^now: depth 1.00"))
+    box = slider.bounding_box()
+    assert box is not None
+    slider.hover(position={"x": 10.0 / 35 * box["width"], "y": 20})
+    expect(slider.locator("b")).to_have_text(re.compile("^00:(09|10), "))
+    expect(chart).to_have_attribute("aria-valuetext", re.compile(r"^(9\.9|10\.\d) s ago: depth 0\.[45]\d"))
+    slider.hover(position={"x": 30.0 / 35 * box["width"], "y": 20})
+    expect(chart).to_have_attribute("aria-valuetext", re.compile("^now: "))
+
+    box = chart.bounding_box()
+    assert box is not None
+    chart.hover(position={"x": box["width"] * 50 / 60, "y": 20})
+    expect(slider.locator("b")).to_have_text(re.compile(r"^00:(09|10), 0\.[45]\d m$"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("^00:20, "))
+    page.mouse.move(0, 0)
+    expect(slider.locator("b")).to_be_hidden()
+
+
 def test_the_signals_of_a_session_are_studied(page: Page, dives: DiveSite) -> None:
     page.goto(f"{dives.url}/#/sessions/1")
     page.get_by_role("link", name="Study", exact=True).click()

@@ -14,7 +14,7 @@ interface Held {
  */
 export class ChartTime {
   held = $state.raw<Held | null>(null);
-  /** where the cursor stands, in s before the charts' right edge; null where there is none */
+  /** where the cursor stands, in s before the charts' right edge, also beyond what they show; null where there is none */
   ago = $state<number | null>(null);
 
   /** View of a chart of a span of `seconds` at `now`. */
@@ -25,6 +25,16 @@ export class ChartTime {
   /** whether the charts show something else than each its own span */
   get zoomed(): boolean {
     return this.held !== null && this.held.seconds !== null;
+  }
+
+  /** The moment under the cursor; null where there is none. */
+  moment(now: number): number | null {
+    return this.ago === null ? null : (this.held?.end ?? now) - this.ago;
+  }
+
+  /** Put the cursor onto a moment; null takes it away. */
+  point(moment: number | null, now: number): void {
+    this.ago = moment === null ? null : (this.held?.end ?? now) - moment;
   }
 
   pause(now: number): void {
@@ -49,7 +59,7 @@ export class ChartTime {
   show(view: View, now: number): void {
     if (!Number.isFinite(now)) return;
     const shown = within(view, now);
-    const cursor = this.ago === null ? null : (this.held?.end ?? now) - this.ago;
+    const cursor = this.moment(now);
     this.held = { end: shown.end, seconds: shown.seconds };
     this.ago = cursor === null ? null : Math.min(Math.max(shown.end - cursor, 0), shown.seconds);
   }
