@@ -51,6 +51,8 @@ if [ "${1:-run}" = test ]; then
     need iproute2 ip
     need clang clang
     ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 || missing="$missing libclang-rt-dev"
+    # Firefox plays H.264 with it; its number is the system's, and apt takes an expression.
+    ls /usr/lib/*/libavcodec.so.* >/dev/null 2>&1 || missing="$missing ^libavcodec[0-9].$"
 fi
 # What makes systems of other computers; then what builds the emulated board for them, and runs the packages there.
 case ${1:-run} in

@@ -6,6 +6,7 @@ numbers have nearly equal high bytes, which lie side by side that way.
 "lines-zlib": a JSON object a line; then zlib.
 "pictures": of each picture its size (u32, little-endian), its time (f64), and the JPEG file, of that size.
 "film": the same of pictures that build on those before them (`robot_runtime.contract.topics.FilmPicture`).
+Where a version stores anything else, the encoding has another name: earlier versions then refuse it in words.
 Each session stores the description of its fields (`describe_topics`), so that a recording stays readable
 when the definitions change.
 """
@@ -43,6 +44,10 @@ DIGITS = {"f": "%.9g", "d": "%.17g"}
 """Enough decimal digits to read back the same number."""
 SCALED_DIGITS = "%.12g"
 MICRO = 1e-6
+
+
+class UnknownEncodingError(ValueError):
+    """A chunk is stored in a form that this version does not know"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,9 +133,9 @@ def unpack(data: bytes, limit: int = CHUNK_BYTES_MAX) -> bytes:
 
 
 def require_encoding(encoding: str, kind: str) -> None:
-    """Raise ValueError where chunks of this kind of topic are encoded otherwise."""
+    """Raise UnknownEncodingError where chunks of this kind of topic are encoded otherwise."""
     if encoding != ENCODINGS[kind]:
-        raise ValueError(f"it is encoded as {encoding!r}, which this version cannot read")
+        raise UnknownEncodingError(f"it is encoded as {encoding!r}, which this version cannot read")
 
 
 def encode(topic: AnyTopic, payloads: Sequence[bytes], count: int) -> tuple[str, bytes, float, float]:

@@ -13,6 +13,7 @@ from sqlmodel import Session, col, desc, func, select
 
 from robot_runtime.contract.chunks import (
     CHUNK_BYTES_MAX,
+    UnknownEncodingError,
     decode_documents,
     decode_pictures,
     decode_rows,
@@ -309,4 +310,9 @@ def _reading(chunk: Any, topic: str, kind: str) -> Iterator[None]:
 
 
 def _damaged(chunk: Any, topic: str, problem: Exception) -> RecordingError:
+    if isinstance(problem, UnknownEncodingError):
+        return RecordingError(
+            f"chunk {chunk.number} of {topic} is of another version: {problem}. "
+            f"Update µ-CAT on this computer, or leave {topic} out"
+        )
     return RecordingError(f"chunk {chunk.number} of {topic} is damaged: {problem}")

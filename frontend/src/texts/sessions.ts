@@ -125,6 +125,7 @@ export const sessions = {
     all: 'All sessions',
     interrupted: 'The server stopped during this recording. Data up to then is stored; the last second may be missing.',
     film: 'Film',
+    filmRemoved: 'The film was removed to make room on the disk. All other samples are there.',
     signals: 'Signals',
     recordedFrom: (origin: string) => `recorded ${origin}`,
     tags: 'Tags',

@@ -82,7 +82,10 @@ def test_changes_are_documents_that_differ_from_the_one_before(store: Store, set
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [("data = x'00'", "is damaged"), ("encoding = 'other'", "is damaged: it is encoded as 'other'")],
+    [
+        ("data = x'00'", "is damaged"),
+        ("encoding = 'other'", "is of another version: it is encoded as 'other'"),
+    ],
 )
 def test_an_unreadable_recording_is_reported(
     store: Store, settings: Settings, change: str, message: str

@@ -3,6 +3,7 @@
 import asyncio
 import base64
 import json
+import re
 import sys
 import time
 from dataclasses import replace
@@ -17,6 +18,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from mcap.reader import make_reader
+from sqlalchemy import update
+from sqlmodel import col
 
 from robot_runtime.clock import Clock, SimulatedClock
 from robot_runtime.contract.film_picture import FilmPicture
@@ -30,9 +33,10 @@ from server.features.exports.selection import ExportSelection
 from server.features.film import choice, plug
 from server.features.film.config import FilmConfig
 from server.features.film.plug import LEASE_SECONDS
-from server.library.content import Recording
+from server.library.content import Recording, RecordingError
 from server.library.film import SPANS_SHOWN, describe_film
 from server.library.retention import RetentionWorker
+from server.platform.models import Chunk
 from server.platform.notices import Notices
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -186,6 +190,21 @@ async def test_a_damaged_film_is_refused_in_words(served: Served, junk: bytes) -
         assert "not filmed there" in text or "cannot be read whole" in text
 
 
+async def test_a_film_of_another_version_is_refused_in_words_and_the_rest_is_read(
+    served: Served, tmp_path: Path
+) -> None:
+    session = await dive_filmed(served)
+    later = update(Chunk).where(col(Chunk.topic) == "film").values(encoding="film-2")
+    await served.get(Store).write(lambda connection: connection.execute(later))
+    sentence = "film is of another version: it is encoded as 'film-2'.* Update µ-CAT on this computer"
+    assert all(status == 500 and re.search(sentence, text) for status, text in await ask(served, session))
+    with pytest.raises(RecordingError, match=sentence):
+        await asyncio.to_thread(export, served, session, tmp_path, format="mp4")
+    tables = await asyncio.to_thread(export, served, session, tmp_path, format="csv", topics=["depth"])
+    with ZipFile(BytesIO(tables)) as archive:
+        assert len(archive.read("depth.csv").splitlines()) == 401
+
+
 async def test_a_film_that_is_cut_off_plays_to_its_end(served: Served) -> None:
     pictures = h264(now(served) + 1.0)
     session = await record(served, [*pictures[:40], (pictures[40][0], pictures[40][1][:9])])
@@ -247,7 +266,7 @@ async def test_the_space_is_that_of_this_robots_own_films(
     async with serve(settings.with_section(FilmConfig(record=True, quality="medium"))) as served:
         usual = (await served.api.get("/film")).json()["picture_bytes"]
         await record(served, pictures)
-        await until(lambda: settings.data.film.exists(), "the size to be stored")
+        await until(lambda: served.get(choice.FilmChoice).is_measured, "the size to be stored")
         plan = (await served.api.get("/film")).json()
     size = sum(len(picture) for _, picture in pictures) / COUNT
     assert plan["measured"]
