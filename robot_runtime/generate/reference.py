@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 from functools import partial
 
-from robot_runtime.clock import SimulatedClock
+from robot_runtime.clock import Clock, SimulatedClock
 from robot_runtime.config import Config
 from robot_runtime.contract.commands import COMMANDS, RobotCommand, StopCommand, http_commands, is_required
 from robot_runtime.contract.documents import Document, TunableParameter
@@ -193,26 +193,18 @@ def _fault_row(name: str, fault: FaultRule) -> tuple[str, ...]:
 
 def parameters_page() -> str:
     """Return the whole text of parameters.md."""
-    rows = map(_parameter_row, _registered())
+    rows = map(_parameter_row, make_core(SimulatedClock()).parameters.listed())
     parameters = table(("parameter", "range", "default", "meaning"), rows)
     return page("Parameters", PARAMETERS_SOURCE, fill("parameters", parameters=parameters))
 
 
-def _registered() -> list[TunableParameter]:
-    clock, config = SimulatedClock(), Config()
+def make_core(clock: Clock) -> Core:
+    """Return the core of a default robot that is joined to no board."""
+    config = Config()
     line = LinkDriver("", config.link.baud, clock, 1, lambda _: None, lambda: None)
     outbox = Outbox(lambda *_: None, lambda _: False)
     open_vision = partial(VisionNode, config.vision, clock)
-    robot = Core(
-        config,
-        clock,
-        "",
-        line,
-        outbox,
-        watched=lambda _: False,
-        open_vision=open_vision,
-    )
-    return robot.parameters.listed()
+    return Core(config, clock, "", line, outbox, watched=lambda _: False, open_vision=open_vision)
 
 
 def _parameter_row(parameter: TunableParameter) -> tuple[str, ...]:

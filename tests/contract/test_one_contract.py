@@ -4,17 +4,12 @@ import os
 import shutil
 import subprocess
 import sys
-from functools import partial
 from pathlib import Path
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.commands import Commands
-from robot_runtime.config import Config
 from robot_runtime.contract.commands import COMMANDS
-from robot_runtime.core import Core
-from robot_runtime.link.link_driver import LinkDriver
-from robot_runtime.transport.outbox import Outbox
-from robot_runtime.vision.node import VisionNode
+from robot_runtime.generate.reference import make_core
 from tests.stack import ROOT
 
 COMMAND = '''
@@ -61,19 +56,5 @@ def test_an_added_command_and_topic_are_found_everywhere(tmp_path: Path) -> None
 
 
 def test_the_runtime_performs_every_command() -> None:
-    clock, config = SimulatedClock(), Config()
-    line = LinkDriver("", config.link.baud, clock, 1, lambda _: None, lambda: None)
-    outbox = Outbox(lambda *_: None, lambda _: False)
-    open_vision = partial(VisionNode, config.vision, clock)
-    commands = Commands(
-        Core(
-            config,
-            clock,
-            "",
-            line,
-            outbox,
-            watched=lambda _: False,
-            open_vision=open_vision,
-        )
-    )
+    commands = Commands(make_core(SimulatedClock()))
     assert set(commands._handlers) == set(COMMANDS.values())

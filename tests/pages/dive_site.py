@@ -2,7 +2,9 @@
 
 import asyncio
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from math import inf
 from pathlib import Path
 from typing import Any, Self
@@ -14,8 +16,10 @@ from server.features.doors.config import DoorsConfig
 from server.http.sign_in.access import Access
 from server.http.sign_in.confirmation import Confirmations
 from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
 from tests.control import Commander
 from tests.server.blocks import snapshot_block
+from tests.server.new_database import new_store
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.serving import serve
 from tests.server.waiting import SECONDS
@@ -25,6 +29,22 @@ from tests.stack import ROOT
 FLOAT_SECONDS = 1800.0
 PERIOD = 0.1
 """s between two blocks of a topic."""
+
+
+@contextmanager
+def recorded_site(data: Path, record_all: Callable[[Store, Settings], object]) -> Iterator["DiveSite"]:
+    """A site whose sessions are those that `record_all` stores."""
+    settings = Settings(data=DataFolder(data), config=ROOT / "robot.toml")
+    make_folders(settings.data)
+
+    def prepare() -> None:
+        with new_store(settings.data) as store:
+            record_all(store, settings)
+
+    with ThreadPoolExecutor(1) as elsewhere:  # Playwright keeps an event loop running here
+        elsewhere.submit(prepare).result()
+    with DiveSite(data) as site:
+        yield site
 
 
 class DiveSite:

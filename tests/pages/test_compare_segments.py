@@ -2,38 +2,26 @@
 
 import re
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from server.platform.schema import prepare
-from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.browser.opening import DESKTOP, opened_page, signed_in
-from tests.pages.dive_site import DiveSite
+from tests.pages.dive_site import DiveSite, recorded_site
 from tests.server.analysis.dives import STEPPED, dive, record
-from tests.stack import ROOT
 
 
-def record_dives(data: Path) -> None:
-    settings = Settings(data=DataFolder(data), config=ROOT / "robot.toml")
-    make_folders(settings.data)
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
-        record(store, settings, dive(), name="two steps")
-        record(store, settings, dive(begin=STEPPED - 3.0, lost=4), name="late", started=STEPPED - 3.5)
+def record_dives(store: Store, settings: Settings) -> None:
+    record(store, settings, dive(), name="two steps")
+    record(store, settings, dive(begin=STEPPED - 3.0, lost=4), name="late", started=STEPPED - 3.5)
 
 
 @pytest.fixture(scope="module")
 def dives(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DiveSite]:
     """A server that has two dives, whose first segments last 10 s and 3.5 s."""
-    data = tmp_path_factory.mktemp("data")
-    with ThreadPoolExecutor(1) as elsewhere:  # Playwright keeps an event loop running here
-        elsewhere.submit(record_dives, data).result()
-    with DiveSite(data) as site:
+    with recorded_site(tmp_path_factory.mktemp("data"), record_dives) as site:
         yield site
 
 

@@ -3,6 +3,8 @@
 import atexit
 import shutil
 import tempfile
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from server.features.comm_tests.runs import CommTestStore
@@ -21,6 +23,14 @@ def place_empty(data: DataFolder) -> None:
         prepare(folder)
         _made["empty"] = folder.database
     _copy(_made["empty"], data)
+
+
+@contextmanager
+def new_store(data: DataFolder) -> Iterator[Store]:
+    """The store of a new data folder, closed at the end; a server may serve it then."""
+    place_empty(data)
+    with closing(Store(data.database)) as store:
+        yield store
 
 
 async def place_with_samples(data: DataFolder) -> None:

@@ -1,19 +1,14 @@
 """A mission runner in simulated time without a board; the test sets what the robot measures and its mode."""
 
 from collections.abc import Callable
-from functools import partial
 
 from robot_runtime.clock import SimulatedClock
-from robot_runtime.config import Config
 from robot_runtime.contract.documents import Event, Mission, Mode
 from robot_runtime.contract.missions import NO_LIMITS
-from robot_runtime.core import Core
-from robot_runtime.link.link_driver import LinkDriver
+from robot_runtime.generate.reference import make_core
 from robot_runtime.missions.document import read_mission
 from robot_runtime.missions.node import LoadedMission, MissionRunner
 from robot_runtime.missions.senses import MissionSenses
-from robot_runtime.transport.outbox import Outbox
-from robot_runtime.vision.node import VisionNode
 
 TICK = 0.1
 """s between two ticks of the control loop."""
@@ -43,21 +38,10 @@ class SetSenses(MissionSenses):
 class MissionRig:
     """A runner of missions with its documents, events and stops."""
 
-    def __init__(self) -> None:
-        config, self.clock = Config(), SimulatedClock()
-        line = LinkDriver("", config.link.baud, self.clock, 1, lambda _: None, lambda: None)
-        outbox = Outbox(lambda *_: None, lambda _: False)
-        open_vision = partial(VisionNode, config.vision, self.clock)
-        self.core = core = Core(
-            config,
-            self.clock,
-            "",
-            line,
-            outbox,
-            watched=lambda _: False,
-            open_vision=open_vision,
-        )
-        self.senses = SetSenses(core.bus, self.clock, core.control, core.supervisor.detector, core.vision)
+    def __init__(self, senses: type[SetSenses] = SetSenses) -> None:
+        self.clock = SimulatedClock()
+        self.core = core = make_core(self.clock)
+        self.senses = senses(core.bus, self.clock, core.control, core.supervisor.detector, core.vision)
         self.documents: list[Mission] = []
         self.events: list[Event] = []
         self.stops: list[str] = []

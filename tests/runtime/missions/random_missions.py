@@ -1,27 +1,18 @@
 """Random missions with a robot that measures anything."""
 
-from functools import partial
 from math import inf
 from random import Random
 from typing import Any
 
 from hypothesis import strategies as st
 
-from robot_runtime.clock import SimulatedClock
-from robot_runtime.config import Config
 from robot_runtime.contract.documents import Mission
-from robot_runtime.contract.missions import LEVELS_MAX, NO_LIMITS
-from robot_runtime.core import Core
-from robot_runtime.link.link_driver import LinkDriver
+from robot_runtime.contract.missions import LEVELS_MAX
 from robot_runtime.missions.document import read_mission
-from robot_runtime.missions.node import LoadedMission, MissionRunner
-from robot_runtime.missions.senses import MissionSenses
-from robot_runtime.transport.outbox import Outbox
-from robot_runtime.vision.node import VisionNode
+from robot_runtime.missions.node import LoadedMission
+from tests.runtime.missions.mission_rig import TICK, MissionRig, SetSenses
 from tests.runtime.missions.water import mission
 
-TICK = 0.1
-"""s between two ticks of the control loop."""
 ROUNDING = 0.001
 """s to which documents round their times."""
 GAIN = "depth.pid.kp"
@@ -84,7 +75,7 @@ def write(step: dict[str, Any]) -> str:
     return "{ " + ", ".join(f"{name} = {value(entry)}" for name, entry in step.items()) + " }"
 
 
-class AnySenses(MissionSenses):
+class AnySenses(SetSenses):
     """Readings that jump: one draw for each question."""
 
     random = Random(0)
@@ -114,43 +105,21 @@ class Swim:
     """A mission of one first step, ticked until it ends; pages are open until `leave` s."""
 
     def __init__(self, text: str, seed: int = 1, leave: float = inf) -> None:
-        config, self.clock = Config(), SimulatedClock()
-        line = LinkDriver("", config.link.baud, self.clock, 1, lambda _: None, lambda: None)
-        outbox = Outbox(lambda *_: None, lambda _: False)
-        open_vision = partial(VisionNode, config.vision, self.clock)
-        core = Core(
-            config,
-            self.clock,
-            "",
-            line,
-            outbox,
-            watched=lambda _: False,
-            open_vision=open_vision,
-        )
-        senses = AnySenses(core.bus, self.clock, core.control, core.supervisor.detector, core.vision)
-        senses.random = Random(seed)
-        self.core = core
-        self.documents: list[Mission] = []
-        self.stops: list[str] = []
-        runner = MissionRunner(
-            self.clock,
-            NO_LIMITS,
-            senses,
-            core.parameters,
-            self.stops.append,
-            self.documents.append,
-            lambda _: None,
-        )
+        rig = MissionRig(AnySenses)
+        assert isinstance(rig.senses, AnySenses)
+        rig.senses.random = Random(seed)
+        self.documents, self.stops, self.core = rig.documents, rig.stops, rig.core
+        runner = rig.runner
         self.document = read_mission(text)
-        self.before = core.parameters.values()[GAIN]
+        self.before = self.core.parameters.values()[GAIN]
         runner.prepare(LoadedMission(self.document, text))
         for _ in range(int(self.document.limits.time / TICK) + 3):
             runner.tick("automatic")
             if not runner.active:
                 break
-            if self.clock.now() < leave:
+            if rig.clock.now() < leave:
                 runner.see_pages(1)
-            self.clock.forward(TICK)
+            rig.clock.forward(TICK)
         self.active = runner.active
 
 

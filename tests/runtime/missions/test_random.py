@@ -5,7 +5,8 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.runtime.missions.random_missions import STEPS, TICK, Swim, check_random_mission, write
+from tests.runtime.missions.mission_rig import TICK
+from tests.runtime.missions.random_missions import STEPS, Swim, check_random_mission, write
 from tests.runtime.missions.water import mission
 
 

@@ -1,7 +1,6 @@
 """Whole comparisons of recorded sessions, as the interface gives them."""
 
 import asyncio
-from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +13,6 @@ from server.analysis.report import write_report
 from server.analysis.schemas import Comparison, ComparisonQuery
 from server.library.content import Recording
 from server.platform.models import BookmarkRow, Gap
-from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.analysis.dives import (
@@ -31,6 +29,7 @@ from tests.server.analysis.dives import (
 )
 from tests.server.blocks import debug_block
 from tests.server.library.missions import DIVE_AT, MARK_AT, mission_blocks
+from tests.server.new_database import new_store
 from tests.server.serving import serve
 
 DEPTH = ["depth.depth", "control.set_point"]
@@ -283,8 +282,7 @@ def test_lines_exist_for_the_recorded_signals_only(store: Store, settings: Setti
 
 
 async def test_over_http(settings: Settings) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         session = await record_dive(store, settings, dive(), name="one")
 
     async with serve(settings) as served:
@@ -316,8 +314,7 @@ BAD: list[tuple[dict[str, Any], int, str]] = [
 
 
 async def test_bad_questions_are_refused(settings: Settings) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         await record_dive(store, settings, dive(), name="one")
 
     async with serve(settings) as served:

@@ -2,14 +2,12 @@
 
 import re
 from collections.abc import Iterator
-from contextlib import closing
 from typing import Any
 
-from server.platform.schema import prepare
 from server.platform.settings import Settings
-from server.platform.store import Store
 from tests.server.blocks import depth_block
 from tests.server.features.exports.recordings import record_batches
+from tests.server.new_database import new_store
 from tests.server.serving import serve
 
 
@@ -29,8 +27,7 @@ def is_number(schema: dict[str, object]) -> bool:
 
 
 async def test_what_is_no_finite_number_is_refused(settings: Settings) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         await record_batches(store, settings, [depth_block(0, 5)])
 
     async with serve(settings) as served:

@@ -1,13 +1,10 @@
 """The missions of a session: document, last state, and when each step began."""
 
-from contextlib import closing
-
 import pytest
 
 from server.library import missions
 from server.library.content import Recording
 from server.library.missions import MISSIONS_SHOWN, read_missions
-from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.server.analysis.dives import STARTED_STEADY, dive, record, record_dive
@@ -19,6 +16,7 @@ from tests.server.library.missions import (
     TEXT,
     mission_blocks,
 )
+from tests.server.new_database import new_store
 from tests.server.serving import serve
 
 
@@ -61,8 +59,7 @@ def test_an_answer_holds_the_first_missions_and_counts_the_others(
 
 
 async def test_the_page_gets_the_missions_of_a_session(settings: Settings) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         session = await record_dive(store, settings, [*dive(), *mission_blocks()])
 
     async with serve(settings) as served:

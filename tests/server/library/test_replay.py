@@ -3,7 +3,6 @@
 import asyncio
 import json
 import zlib
-from contextlib import closing
 from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
@@ -23,12 +22,12 @@ from server.library.replay import LISTED_CHUNKS, RANGE_MAX, read_blocks_between
 from server.library.timeline import StateSilence, read_timeline
 from server.platform.errors import InvalidError
 from server.platform.models import BookmarkRow, Chunk, SessionRow
-from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.session import find_row
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import STARTED_STEADY, record, record_batches
+from tests.server.new_database import new_store
 from tests.server.serving import serve
 
 
@@ -325,8 +324,7 @@ def test_thumbnails_come_as_pictures(store: Store, settings: Settings) -> None:
 
 
 async def test_a_picture_s_address_does_not_show_that_of_another_session(settings: Settings) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         session = await record_batches(store, settings, thumbnails(0, 100.0))
 
     async with serve(settings) as served:
@@ -375,8 +373,7 @@ def test_the_timeline_has_events_bookmarks_and_gaps(store: Store, settings: Sett
 
 
 async def test_over_http(settings: Settings) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         session = await record_batches(store, settings, [depth_block(0, 500), state_block(0)])
         expected = read_blocks_between(read(store, session), 102.0, 103.0, 60.0)
 

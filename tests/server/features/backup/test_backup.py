@@ -26,6 +26,7 @@ from server.platform.store import Reader, Store
 from server.platform.user_files import NAMES
 from tests.server.blocks import depth_block
 from tests.server.features.exports.recordings import record
+from tests.server.new_database import new_store
 from tests.server.older import ROWS, make_session, upgrade_to
 from tests.stack import ROOT
 
@@ -35,8 +36,7 @@ def run(settings: Settings, *arguments: str) -> int:
 
 
 def fill(settings: Settings, *names: str) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         for name in names:
             record(store, settings, [depth_block(0, 100)], name=name)
 
@@ -63,8 +63,7 @@ def test_a_backup_is_complete_private_and_has_a_checksum(
 
 
 def test_a_backup_of_a_database_in_use_is_consistent(settings: Settings, tmp_path: Path) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         record(store, settings, [depth_block(0, 100)], name="0")
         ended = threading.Event()
 
@@ -387,8 +386,7 @@ def test_older_copies_that_cannot_be_deleted_are_a_remark_beside_what_was_done(
 
 
 def test_a_second_writer_is_refused(settings: Settings) -> None:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         with pytest.raises(Exception, match="another program writes"):
             Store(settings.data.database)
         asyncio.run(store.probe())

@@ -5,20 +5,12 @@ from contextlib import closing
 import pytest
 from sqlalchemy import text
 
-from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.server.analysis.dives import DEEP, DISARMED, STARTED_STEADY, STEPPED, dive, record
+from tests.server.analysis.dives import DEEP, DISARMED, STARTED_STEADY, STEPPED
 from tests.server.serving import serve
 
 SETTLED = STEPPED + 15.0 - STARTED_STEADY
-
-
-@pytest.fixture
-def session(settings: Settings) -> int:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
-        return record(store, settings, dive(), name="one")
 
 
 async def test_story_figures_track_and_readings(settings: Settings, session: int) -> None:

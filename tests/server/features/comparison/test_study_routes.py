@@ -1,21 +1,9 @@
 """Spectra and pairs over HTTP, and what is refused in words."""
 
-from contextlib import closing
-
 import pytest
 
-from server.platform.schema import prepare
 from server.platform.settings import Settings
-from server.platform.store import Store
-from tests.server.analysis.dives import dive, record
 from tests.server.serving import serve
-
-
-@pytest.fixture
-def session(settings: Settings) -> int:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
-        return record(store, settings, dive(), name="one")
 
 
 async def test_spectra_and_pairs_of_a_part(settings: Settings, session: int) -> None:

@@ -1,6 +1,5 @@
 """Summaries: made once a recording has ended, beside the server; a session without a name gets one."""
 
-from contextlib import closing
 from datetime import UTC, datetime
 
 import pytest
@@ -8,11 +7,10 @@ import pytest
 from server.features.comparison import summaries
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.library.catalogue import Catalogue
-from server.platform.schema import prepare
 from server.platform.settings import Settings
-from server.platform.store import Store
 from server.recording.session import default_name, has_default_name
 from tests.server.analysis.dives import dive, record
+from tests.server.new_database import new_store
 from tests.server.serving import Served
 from tests.server.waiting import until
 
@@ -20,8 +18,7 @@ from tests.server.waiting import until
 @pytest.fixture
 def dives(settings: Settings) -> list[int]:
     """A dive that nobody named, and one that somebody did."""
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         return [record(store, settings, dive(), name=name) for name in ("", "mine")]
 
 

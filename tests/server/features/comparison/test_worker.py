@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable
-from contextlib import closing, suppress
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,22 +18,13 @@ from server.analysis.comparer import Comparer
 from server.analysis.schemas import ComparisonQuery, LinesQuery
 from server.features.comparison import worker
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
-from server.platform.schema import prepare
 from server.platform.settings import Settings
-from server.platform.store import Reader, Store
+from server.platform.store import Reader
 from server.processes import task_process
-from tests.server.analysis.dives import dive, record
 from tests.server.serving import Served, serve
 from tests.server.waiting import SECONDS, alive, until
 
 Python = Callable[[str], SimpleNamespace]
-
-
-@pytest.fixture
-def session(settings: Settings) -> int:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
-        return record(store, settings, dive(), name="one")
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 import asyncio
 import hashlib
 import zipfile
-from contextlib import closing
 from pathlib import Path
 from typing import get_args
 
@@ -12,19 +11,17 @@ from server.features.exports import workbook
 from server.features.exports.command import FORMATS
 from server.features.exports.schemas import Format
 from server.platform.running_server import announce
-from server.platform.schema import prepare
 from server.platform.server_config import ServerConfig
 from server.platform.settings import Settings
-from server.platform.store import Store
 from tests.server.blocks import depth_block
 from tests.server.features.exports.recordings import record
+from tests.server.new_database import new_store
 from tests.server.serving import serve
 
 
 @pytest.fixture
 def session(settings: Settings) -> int:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         return record(store, settings, [depth_block(0, 20)])
 
 

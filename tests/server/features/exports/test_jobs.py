@@ -4,7 +4,6 @@ import signal
 import sys
 import time
 import zipfile
-from contextlib import closing
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,7 +21,6 @@ from server.features.exports.jobs import JOBS_MAX, OPERATORS_ONLY, RETENTION_DAY
 from server.features.exports.schemas import ExportOptions, Job, NewExport
 from server.library.retention import RetentionWorker
 from server.platform.models import SessionRow
-from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.platform.wall_clock import DAY, WallClock
@@ -30,14 +28,14 @@ from server.processes import side_process
 from server.recording.session import find_row
 from tests.server.blocks import debug_block, depth_block
 from tests.server.features.exports.recordings import record
+from tests.server.new_database import new_store
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
 
 
 @pytest.fixture
 def session(settings: Settings) -> int:
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         return record(store, settings, [depth_block(0, 5000), debug_block(0, "a", "b")])
 
 
