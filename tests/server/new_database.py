@@ -27,8 +27,11 @@ def place_empty(data: DataFolder) -> None:
 
 @contextmanager
 def new_store(data: DataFolder) -> Iterator[Store]:
-    """The store of a new data folder, closed at the end; a server may serve it then."""
-    place_empty(data)
+    """The store of a data folder that no server serves, closed at the end; an older database is upgraded."""
+    if data.database.exists():
+        prepare(data)
+    else:
+        place_empty(data)
     with closing(Store(data.database)) as store:
         yield store
 

@@ -508,10 +508,10 @@ async def ask_everything(house: House, who: Who) -> list[tuple[object, ...]]:
     right = house.places("right", "right")
     for (method, template), least in ROUTES.items():
         path, query = template.replace(":path", "").format(**ABSENT), QUERIES.get(template, "")
+        # Whoever has control may have given it back a moment ago, or another may have taken it.
+        control = house.people["control"]
+        await house.ask(control, "POST", "/api/control/take", right, query="over=true")
         for host, origin, address in WHENCE:
-            # Whoever has control may have given it back a moment ago, or another may have taken it.
-            control = house.people["control"]
-            await house.ask(control, "POST", "/api/control/take", right, query="over=true")
             places = house.places(host, origin)
             status, _, report = await house.ask(
                 house.people[who], method, path, places, query=query, address=address

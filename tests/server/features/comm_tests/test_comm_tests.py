@@ -23,11 +23,11 @@ from server.features.comm_tests import tables
 from server.features.comm_tests.reference import read_table
 from server.features.comm_tests.runs import CommTestStore
 from server.features.comm_tests.shipped import THESIS, import_samples, shipped_documents
-from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.platform.store import Store
 from tests.board.rig import ROOT, build
 from tests.server.features.comm_tests.stored_runs import ENTRY, LOST, begin
+from tests.server.new_database import new_store
 from tests.server.older import upgrade_to
 from tests.waiting import SECONDS
 
@@ -216,8 +216,7 @@ def test_runs_of_the_previous_version_are_still_there(settings: Settings) -> Non
         values = "'old', '{}', 'thesis', 'to_board', 1, 'f', '{}', 'h', 1.0, 'complete', ''"
         database.execute(f"INSERT INTO comm_test_run ({columns}) VALUES ({values})")
         database.commit()
-    prepare(settings.data)
-    with closing(Store(settings.data.database)) as store:
+    with new_store(settings.data) as store:
         (run,) = CommTestStore(store).summaries()
     assert (run.name, run.place, run.sample) == ("old", "emulated", "")
 
