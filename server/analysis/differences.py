@@ -3,12 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.toml_text import TomlError, read_toml
 from server.analysis.moments import ControlHistory, Span
 from server.library.crafts import describe_crafts
 from server.platform.models import SessionRow
+from server.platform.schema_base import Schema
 
 _ROW: Mapping[str, str] = {
     "scenario_name": "Scenario",
@@ -33,7 +34,7 @@ _STATE: Mapping[str, str] = {
 CHANGED = "changed while armed: "
 
 
-class Difference(BaseModel):
+class Difference(Schema):
     """A property that differs between sessions."""
 
     group: str = Field(description="In force, Parameters, Session, Craft, robot.toml or Scenario")

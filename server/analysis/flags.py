@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from itertools import chain, pairwise
 from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.documents import MISSION_MARK, Severity
 from server.analysis.moments import ControlHistory
 from server.library.missions import RecordedMission
 from server.library.timeline import Moment
+from server.platform.schema_base import Schema
 
 FLAGS_MAX = 2000
 """Flags in one answer: the gravest, then the earliest."""
@@ -18,7 +19,7 @@ _KINDS: dict[str, FlagKind] = {"controller": "controller", "set_point": "set_poi
 _GRAVITY: tuple[Severity, ...] = ("alarm", "caution", "info")
 
 
-class Flag(BaseModel):
+class Flag(Schema):
     """Something that happened at a moment of a dive."""
 
     time: float = Field(description="s since the session's start")

@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from server.analysis.moments import Span
 from server.analysis.segment import TOGETHER, Segment
+from server.platform.schema_base import Schema
 
 SET_POINTS_APART = 0.05
 """m"""
@@ -16,7 +17,7 @@ ROUNDING = 1e-9
 NO_SEGMENT = "This session has no such segment."
 
 
-class Likeness(BaseModel):
+class Likeness(Schema):
     """Likeness of the compared parts: the same segments by mode, set point and duration."""
 
     alike: bool

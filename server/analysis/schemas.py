@@ -4,7 +4,7 @@ from math import isfinite
 from re import fullmatch
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
+from pydantic import ConfigDict, Field, FiniteFloat, model_validator
 
 from server.analysis.alignment import Align
 from server.analysis.differences import Difference
@@ -15,6 +15,7 @@ from server.http.request_body import RequestBody
 from server.library.missions import MissionStepStart
 from server.library.timeline import Moment
 from server.metrics.figure import Figure, FigureMeaning
+from server.platform.schema_base import Schema
 from server.recording.schemas import SessionNumber
 
 if TYPE_CHECKING:
@@ -88,10 +89,10 @@ class StoryFiguresQuery(RequestBody):
     part: TimeRange | None = None
 
 
-class ReportQuery(BaseModel):
+class ReportQuery(Schema):
     """A comparison as a query: lists with commas, moments in s on the common time axis."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", defer_build=False)
     sessions: Annotated[str, Field(pattern=r"^\d+(,\d+)*$", max_length=200)]
     signals: Annotated[str, Field(max_length=2500)] = "depth.depth,control.set_point"
     by: str = "start"
@@ -146,7 +147,7 @@ def _values(values: "Floats") -> list[float | None]:
     return [float(f"{value:.6g}") if isfinite(value) else None for value in values.tolist()]
 
 
-class SignalLine(BaseModel):
+class SignalLine(Schema):
     """A signal over time, decimated to minimum and maximum of each column; null breaks the line."""
 
     time: list[float] = Field(description="s since the session's start")
@@ -159,7 +160,7 @@ class SignalLine(BaseModel):
         return cls(time=line.time.round(4).tolist(), low=_values(line.low), high=_values(line.high))
 
 
-class SessionLines(BaseModel):
+class SessionLines(Schema):
     """One session's lines."""
 
     id: int
@@ -190,13 +191,13 @@ class Compared(SessionLines):
     figures: dict[str, Figure] = Field(description="by name; empty if none were asked for")
 
 
-class Lines(BaseModel):
+class Lines(Schema):
     """The lines of a time range."""
 
     sessions: list[SessionLines]
 
 
-class Comparison(BaseModel):
+class Comparison(Schema):
     """A comparison of sessions, in the requested order."""
 
     align: Align

@@ -1,8 +1,9 @@
 """A segment of a dive."""
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from server.analysis.moments import Span
+from server.platform.schema_base import Schema
 
 TOGETHER = 1.0
 """s between two changes that belong together, and the least length of a segment that others follow."""
@@ -11,7 +12,7 @@ SEGMENTS_MAX = 200
 """Of a session, that are shown."""
 
 
-class Segment(BaseModel):
+class Segment(Schema):
     """A time in which the robot was armed and nothing was changed; s since the session's start."""
 
     start: float

@@ -4,14 +4,13 @@ from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from pydantic import BaseModel
-
 from robot_runtime.contract.chunks import row_fields
 from robot_runtime.contract.topics import DETECTION, STATE
 from server.library.content import Recording, depth_loop
+from server.platform.schema_base import Schema
 
 
-class Signal(BaseModel):
+class Signal(Schema):
     """One number over time; `name` is topic and column, joined by a dot."""
 
     name: str

@@ -1,6 +1,6 @@
 """Answers about a session as one dive: its story, figures, tracks, spectra and pairs of signals."""
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from server.analysis.flags import Flag
 from server.analysis.schemas import SignalLine, TimeRange
@@ -8,11 +8,12 @@ from server.analysis.segment import SEGMENTS_MAX, Segment
 from server.analysis.signals import Signal
 from server.library.crafts import Water
 from server.metrics.figure import Figure, FigureMeaning
+from server.platform.schema_base import Schema
 
 SPECTRA_MAX = 6
 
 
-class Story(BaseModel):
+class Story(Schema):
     """A session as one dive; times are s since its start."""
 
     duration: float
@@ -24,7 +25,7 @@ class Story(BaseModel):
     flags: list[Flag] = Field(description="in order of time; of too many the gravest")
 
 
-class StoryFigures(BaseModel):
+class StoryFigures(Schema):
     """The figures of a dive, by name."""
 
     meanings: list[FigureMeaning]
@@ -34,7 +35,7 @@ class StoryFigures(BaseModel):
     )
 
 
-class Way(BaseModel):
+class Way(Schema):
     """Points of a track, in order of time."""
 
     time: list[float] = Field(description="s since the session's start")
@@ -43,7 +44,7 @@ class Way(BaseModel):
     depth: list[float] = Field(description="m")
 
 
-class SwumTrack(BaseModel):
+class SwumTrack(Schema):
     """The track from an arming to the disarming."""
 
     estimate: Way = Field(description="by dead reckoning: its error grows")
@@ -51,7 +52,7 @@ class SwumTrack(BaseModel):
     truth: Way | None = Field(description="null where it was not simulated")
 
 
-class StudyQuery(BaseModel):
+class StudyQuery(Schema):
     """Signals of a session within a part of its time, or all of it; of a pair first the one across."""
 
     session: int
@@ -59,7 +60,7 @@ class StudyQuery(BaseModel):
     part: TimeRange | None
 
 
-class SpectrumPeak(BaseModel):
+class SpectrumPeak(Schema):
     """The highest place of a spectrum, as the sine that would make it."""
 
     frequency: float = Field(description="Hz")
@@ -67,7 +68,7 @@ class SpectrumPeak(BaseModel):
     share: float = Field(description="of the signal's variance, 0 to 1")
 
 
-class Spectrum(BaseModel):
+class Spectrum(Schema):
     """The one-sided power spectral density of a signal by Welch's method; its integral is the variance."""
 
     signal: Signal
@@ -79,7 +80,7 @@ class Spectrum(BaseModel):
     problem: str = Field(description="why there is no spectrum; empty if there is one")
 
 
-class SignalPair(BaseModel):
+class SignalPair(Schema):
     """Two signals at the same times, in order of time."""
 
     x: Signal

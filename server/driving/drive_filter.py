@@ -7,10 +7,11 @@ import json
 from collections.abc import Callable
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import ConfigDict, Field, FiniteFloat
 
 from robot_runtime.clock import Clock
 from server.driving.schemas import DriveCounts
+from server.platform.schema_base import Schema
 
 LATE_SECONDS = 0.3
 """The greatest age of a command, and how far it may lie ahead, on the robot's steady clock."""
@@ -18,7 +19,7 @@ LATE_SECONDS = 0.3
 Number = Annotated[int, Field(ge=0, le=2**53)]
 
 
-class DriveCommand(BaseModel):
+class DriveCommand(Schema):
     """The position of the sticks: x, y, z, roll, pitch, yaw, each -1 to 1, at `taken` (s, steady clock)."""
 
     model_config = ConfigDict(strict=True)

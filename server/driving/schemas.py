@@ -3,7 +3,9 @@
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import BaseModel, Field, FiniteFloat, StrictBool, StrictInt
+from pydantic import Field, FiniteFloat, StrictBool, StrictInt
+
+from server.platform.schema_base import Schema
 
 Number = Annotated[FiniteFloat, Field(strict=True)]
 Text = Annotated[str, Field(max_length=100)]
@@ -11,14 +13,14 @@ Value = StrictBool | StrictInt | Number | Text
 """A parameter's value."""
 
 
-class Holder(BaseModel):
+class Holder(Schema):
     """The client in control."""
 
     client: int
     name: str
 
 
-class DriveCounts(BaseModel):
+class DriveCounts(Schema):
     """Stick commands since the server started: passed to the robot, and dropped for a reason."""
 
     passed: int = 0
@@ -29,7 +31,7 @@ class DriveCounts(BaseModel):
     from_the_future: int = Field(default=0, description="more than 0.3 s ahead of the robot's clock")
 
 
-class ControlState(BaseModel):
+class ControlState(Schema):
     """The holder of control, as on the live socket."""
 
     epoch: int = Field(description="grows with every change of the holder")
@@ -42,7 +44,7 @@ class ControlDetails(ControlState):
     driven: DriveCounts
 
 
-class ChangedValue(BaseModel):
+class ChangedValue(Schema):
     """One parameter before and after a change."""
 
     name: str
@@ -50,7 +52,7 @@ class ChangedValue(BaseModel):
     after: Value
 
 
-class Change(BaseModel):
+class Change(Schema):
     """Parameters that were changed together."""
 
     id: int
@@ -62,14 +64,14 @@ class Change(BaseModel):
     undoable: bool = Field(description="true for the next change that can be undone")
 
 
-class LeftOut(BaseModel):
+class LeftOut(Schema):
     """A parameter that was not set, and the reason."""
 
     name: str
     why: str
 
 
-class Restored(BaseModel):
+class Restored(Schema):
     """The parameters that a command changed, and those that it omitted."""
 
     changed: list[ChangedValue]

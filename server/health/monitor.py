@@ -5,7 +5,7 @@ import json
 from collections.abc import Callable
 from typing import Any, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.link_statistics import LinkStatistics
@@ -15,6 +15,7 @@ from robot_runtime.simulation.scene.availability import missing
 from robot_runtime.transport.blocks import Block
 from server import VERSION
 from server.platform.errors import UnavailableError
+from server.platform.schema_base import Schema
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.processes.managed_process import ManagedProcess
@@ -39,7 +40,7 @@ Condition = tuple[PartState, str]
 """The state of a part, and a sentence about it."""
 
 
-class PartHealth(BaseModel):
+class PartHealth(Schema):
     """The health of a part: its state, and a sentence about it."""
 
     name: PartName
@@ -50,7 +51,7 @@ class PartHealth(BaseModel):
     )
 
 
-class Health(BaseModel):
+class Health(Schema):
     """The health of all parts: "failed" if one has failed, else "starting" if one starts, else "ok"."""
 
     status: Literal["ok", "starting", "failed"]

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from fastapi import APIRouter, Path, Query
 from fastapi.params import Depends
-from pydantic import BaseModel
+from pydantic import Field
 from starlette.responses import Response
 from starlette.routing import BaseRoute
 
@@ -17,6 +17,7 @@ from server.http.sign_in.confirmation import UnconfirmedError
 from server.http.sign_in.policy import LINKED, Need, needs
 from server.platform.errors import ApiError
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.schema_base import Schema
 
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
 Identifier = Annotated[int, Path(ge=1, le=IDENTIFIER_MAX)]
@@ -27,7 +28,7 @@ Errors = type[ApiError] | Mapping[int, str]
 """Errors of an operation: a class of them, or descriptions by status."""
 
 
-class Problem(BaseModel):
+class Problem(Schema):
     """An error: what happened, why, and what to do.
 
     `problems` are those of a document or a request, by entry. `kind` is `confirmation` where a browser must
@@ -37,7 +38,7 @@ class Problem(BaseModel):
 
     detail: str
     kind: Literal["", "confirmation", "changed"] = ""
-    problems: list[EntryProblem] = []
+    problems: list[EntryProblem] = Field(default=[])
 
 
 EVERYWHERE: dict[int | str, dict[str, Any]] = {

@@ -6,11 +6,12 @@ from itertools import islice
 from typing import Any, Literal
 
 import tomli_w
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.craft import ORIGIN_MAX, TITLE_MAX
 from robot_runtime.contract.topics import CRAFT, STATUS, TRUTH
 from server.library.content import Recording, reading_content
+from server.platform.schema_base import Schema
 
 _LIST = re.compile(r"\[\n([^\[\]]*),\n\s*\]")
 CRAFTS_MAX = 100
@@ -18,7 +19,7 @@ CRAFTS_MAX = 100
 Water = Literal["simulated", "real", "unknown"]
 
 
-class RecordedCraft(BaseModel):
+class RecordedCraft(Schema):
     """A craft that the simulator swam from `time` on."""
 
     time: float = Field(description="s since the session's start")

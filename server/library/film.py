@@ -12,12 +12,13 @@ from math import inf
 from struct import Struct
 from typing import IO, TYPE_CHECKING, Any
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.film_picture import FilmPicture
 from robot_runtime.contract.topics import FILM
 from server.library.content import Recording
 from server.platform.errors import NotFoundError, UnavailableError
+from server.platform.schema_base import Schema
 
 if TYPE_CHECKING:
     import av
@@ -62,14 +63,14 @@ class CodecMissingError(UnavailableError):
         )
 
 
-class FilmSpan(BaseModel):
+class FilmSpan(Schema):
     """A time without a gap, s since the session's start."""
 
     start: float
     end: float
 
 
-class FilmDescription(BaseModel):
+class FilmDescription(Schema):
     """The film of a session: its times, the number of its pictures, and their coding."""
 
     spans: list[FilmSpan]

@@ -8,7 +8,7 @@ from datetime import UTC, datetime, tzinfo
 from itertools import groupby, islice
 from typing import Annotated, Any, Literal
 
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, ConfigDict, Field
 from sqlalchemy import ColumnElement, exists, literal, true
 from sqlmodel import col, desc, func, or_, select
 
@@ -26,6 +26,7 @@ from server.library.schemas import (
     SessionGroup,
 )
 from server.platform.models import IDENTIFIER_MAX, BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
+from server.platform.schema_base import Schema
 from server.platform.searching import fold
 from server.platform.store import Reader
 from server.recording.schemas import Origin, Session, SessionNumber, State
@@ -61,16 +62,14 @@ class SessionPage:
     following: int | None
 
 
-class SessionSelection(BaseModel):
+class SessionSelection(Schema):
     """Conditions on sessions; a session has to meet all that are given."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", defer_build=False)
     search: Annotated[
         str, Field(max_length=200, description="words that name, notes, tags or scenario have")
     ] = ""
-    tag: Annotated[
-        list[str], Field(max_length=TAGS_SHOWN, description="tags that they have, all of them")
-    ] = []
+    tag: list[str] = Field(default=[], max_length=TAGS_SHOWN, description="tags that they have, all of them")
     origin: Origin | None = None
     state: State | None = None
     scenario: Annotated[str, Field(max_length=200, description="name of the scenario that they ran")] = ""

@@ -3,12 +3,13 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pydantic import BaseModel, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
 
 from robot_runtime.contract.documents import Mission
 from robot_runtime.contract.topics import MISSION
 from server.library.content import Recording
 from server.library.upgrade import NoCounterpartError, rewrite_document
+from server.platform.schema_base import Schema
 
 TOPIC = MISSION
 _MISSION = TypeAdapter(Mission)
@@ -16,7 +17,7 @@ MISSIONS_SHOWN, SHOWN_BYTES = 100, 4_000_000
 """Of one answer; its size is that of the missions as JSON."""
 
 
-class MissionStepStart(BaseModel):
+class MissionStepStart(Schema):
     """The first start of a mission's step."""
 
     path: str = Field(description='from 1 along the branches, as "3.1.2"; empty for the first step')
@@ -24,7 +25,7 @@ class MissionStepStart(BaseModel):
     time: float = Field(description="s since the session's start")
 
 
-class RecordedMission(BaseModel):
+class RecordedMission(Schema):
     """A mission of a session. Times are s since the session's start."""
 
     start: float

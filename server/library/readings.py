@@ -1,18 +1,19 @@
 """The robot's values at a moment of a session."""
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.chunks import row_layout
 from robot_runtime.contract.topics import CONTROL, DEPTH, IMU, MOTOR, STATUS
 from robot_runtime.control.attitude import euler_angles
 from server.library.content import Recording
+from server.platform.schema_base import Schema
 
 VALUE_SECONDS = 2.0
 """s before the moment: an older sample is no value of it."""
 FINS = 4
 
 
-class FinReading(BaseModel):
+class FinReading(Schema):
     """One fin: angles in rad, and the drive."""
 
     angle: float
@@ -20,7 +21,7 @@ class FinReading(BaseModel):
     drive: float
 
 
-class Readings(BaseModel):
+class Readings(Schema):
     """The robot's values at a moment; null where none was measured within 2 s before."""
 
     time: float = Field(description="s since the session's start")

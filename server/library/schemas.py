@@ -3,10 +3,11 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, StringConstraints
+from pydantic import Field, StringConstraints
 
 from server.http.request_body import RequestBody
 from server.library.crafts import RecordedCraft, Water
+from server.platform.schema_base import Schema
 from server.recording.schemas import GapKind, Session
 
 SHOWN_MAX = 2000
@@ -24,7 +25,7 @@ Tag = Annotated[
 ]
 
 
-class Bookmark(BaseModel):
+class Bookmark(Schema):
     """A moment of a session, with a note if somebody wrote one."""
 
     id: int
@@ -34,7 +35,7 @@ class Bookmark(BaseModel):
     made: datetime = Field(description="UTC")
 
 
-class SessionGap(BaseModel):
+class SessionGap(Schema):
     """Samples that are missing in the session: `missed` of them, noticed at `time`."""
 
     topic: str
@@ -43,7 +44,7 @@ class SessionGap(BaseModel):
     missed: int
 
 
-class RecordedColumn(BaseModel):
+class RecordedColumn(Schema):
     """One column of a topic, as it is exported."""
 
     name: str
@@ -51,7 +52,7 @@ class RecordedColumn(BaseModel):
     meaning: str
 
 
-class RecordedTopic(BaseModel):
+class RecordedTopic(Schema):
     """A recorded topic; times are of the first and the last sample, s since the session's start."""
 
     name: str
@@ -63,7 +64,7 @@ class RecordedTopic(BaseModel):
     columns: list[RecordedColumn]
 
 
-class SessionGroup(BaseModel):
+class SessionGroup(Schema):
     """Sessions that follow each other in the list."""
 
     name: str = Field(description="a day such as 2026-05-31, a scenario or a mission; empty: without one")

@@ -2,18 +2,19 @@
 
 from itertools import islice
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.topics import DEPTH, IMU, SNAPSHOT, TRACK
 from robot_runtime.control.attitude import euler_angles
 from server.library.content import Recording
 from server.library.readings import newest_row
+from server.platform.schema_base import Schema
 
 SNAPSHOTS_SHOWN = 60
 """Snapshots in one answer."""
 
 
-class EstimatedPosition(BaseModel):
+class EstimatedPosition(Schema):
     """The position by dead reckoning since the robot was armed, m: an estimate whose error grows."""
 
     x: float = Field(description="along heading 0")
@@ -22,7 +23,7 @@ class EstimatedPosition(BaseModel):
     deviation_y: float = Field(description="standard deviation")
 
 
-class SnapshotValues(BaseModel):
+class SnapshotValues(Schema):
     """The moment of a snapshot and the robot's values then; null where none was measured."""
 
     time: float = Field(description="s since the session's start")

@@ -3,12 +3,13 @@
 import shutil
 from pathlib import Path
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 from sqlmodel import col, func, select
 
 from server.library.config import SessionsConfig
 from server.platform.disk_space import free_bytes
 from server.platform.models import SessionRow
+from server.platform.schema_base import Schema
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.session import HIDDEN, REMOVING
@@ -16,7 +17,7 @@ from server.recording.session import HIDDEN, REMOVING
 GIGABYTE = 1_000_000_000
 
 
-class Storage(BaseModel):
+class Storage(Schema):
     """Use of the disk that holds the data folder, and the rules of retention."""
 
     database: int = Field(description="bytes of the database's files")

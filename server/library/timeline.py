@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain, islice, pairwise
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 from sqlmodel import col, select
 
 from robot_runtime.contract.documents import Event, Severity
@@ -14,6 +14,7 @@ from server.library.bookmarks import select_bookmarks
 from server.library.content import Recording
 from server.library.schemas import SHOWN_MAX, Bookmark
 from server.platform.models import Chunk
+from server.platform.schema_base import Schema
 from server.recording.schemas import State
 from server.recording.session import from_row
 
@@ -32,14 +33,14 @@ class Moment:
     text: str
 
 
-class StateSilence(BaseModel):
+class StateSilence(Schema):
     """A time without samples of the robot's state; s since the session's start."""
 
     start: float
     end: float
 
 
-class Timeline(BaseModel):
+class Timeline(Schema):
     """A session as a whole, for its seek bar."""
 
     name: str

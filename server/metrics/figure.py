@@ -2,12 +2,14 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
+
+from server.platform.schema_base import Schema
 
 Better = Literal["less", "zero", "neither"]
 
 
-class FigureMeaning(BaseModel):
+class FigureMeaning(Schema):
     """Name, unit and definition of a figure."""
 
     name: str
@@ -25,7 +27,7 @@ def describe(
     return FigureMeaning(name=name, title=title, unit=unit, decimals=decimals, better=better, meaning=meaning)
 
 
-class FigureMark(BaseModel):
+class FigureMark(Schema):
     """The position of a figure in its chart: s since the session's start or the step, and m or degrees."""
 
     start: float
@@ -34,7 +36,7 @@ class FigureMark(BaseModel):
     high: float | None = None
 
 
-class Figure(BaseModel):
+class Figure(Schema):
     """A figure's value, or the reason for its lack."""
 
     value: float | None

@@ -3,9 +3,10 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from server.platform.models import IDENTIFIER_MAX
+from server.platform.schema_base import Schema
 
 State = Literal["recording", "complete", "interrupted"]
 GapKind = Literal["missed", "restarted", "not stored", "damaged", "removed"]
@@ -17,7 +18,7 @@ CURVE_POINTS = 60
 """Depths of a summary's curve."""
 
 
-class SessionSummary(BaseModel):
+class SessionSummary(Schema):
     """The summary of an ended session, for the list. Values that its samples lack are null or empty."""
 
     depth: float | None = Field(description="m, the greatest")
@@ -37,7 +38,7 @@ class SessionSummary(BaseModel):
     damaged: bool = Field(description="true: a part of the samples cannot be read, and is not in here")
 
 
-class Session(BaseModel):
+class Session(Schema):
     """One recording; "interrupted" if the server ended without closing it: its stored samples remain."""
 
     id: int

@@ -3,22 +3,23 @@
 from datetime import datetime
 from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from server.http.request_body import RequestBody
+from server.platform.schema_base import Schema
 
 UploadPhase = Literal["idle", "reading", "uploading"]
 UploadChoice = Literal["built", "previous"]
 
 
-class PreviousFirmware(BaseModel):
+class PreviousFirmware(Schema):
     """The firmware that was on the board before the last upload of another one."""
 
     path: str = Field(description="on the robot's computer")
     since: datetime
 
 
-class UploadState(BaseModel):
+class UploadState(Schema):
     """The present or last upload of firmware."""
 
     phase: UploadPhase = Field(description="reading: the firmware that is on the board is being read")

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.packets import FIN_COUNT
 from robot_runtime.experiments.bring_up.procedure import StepState
@@ -11,11 +11,12 @@ from robot_runtime.experiments.bring_up.results import Verdict
 from robot_runtime.simulation.boards.workbench import Lamp, Pose
 from server.http.request_body import RequestBody
 from server.platform.runs import RUN_MEANING
+from server.platform.schema_base import Schema
 
 Phase = Literal["idle", "starting", "ready", "ending"]
 
 
-class BringUpQuestion(BaseModel):
+class BringUpQuestion(Schema):
     """A number that a person gives, or one of the choices."""
 
     name: str
@@ -27,7 +28,7 @@ class BringUpQuestion(BaseModel):
     optional: bool
 
 
-class BringUpAction(BaseModel):
+class BringUpAction(Schema):
     """A button of a step. A button to hold is posted every 100 ms while held, and with `stop` at the end."""
 
     name: str
@@ -36,7 +37,7 @@ class BringUpAction(BaseModel):
     inputs: list[BringUpQuestion]
 
 
-class BringUpResult(BaseModel):
+class BringUpResult(Schema):
     """One check of one part."""
 
     what: str
@@ -46,7 +47,7 @@ class BringUpResult(BaseModel):
     advice: str = Field(description="what to do where it is not good")
 
 
-class BringUpStep(BaseModel):
+class BringUpStep(Schema):
     """A step: its task and its results."""
 
     name: str
@@ -58,14 +59,14 @@ class BringUpStep(BaseModel):
     results: list[BringUpResult]
 
 
-class EncoderReading(BaseModel):
+class EncoderReading(Schema):
     """An encoder's angle and the field of its magnet."""
 
     counts: int = Field(description="0 to 1023")
     field: MagneticField
 
 
-class ImuRaw(BaseModel):
+class ImuRaw(Schema):
     """The IMU's reading along and about the chip's own axes."""
 
     identity: int = Field(description="WHO_AM_I")
@@ -73,14 +74,14 @@ class ImuRaw(BaseModel):
     rate: tuple[float, float, float] = Field(description="°/s")
 
 
-class BeaconLevels(BaseModel):
+class BeaconLevels(Schema):
     """The levels of the detectors' pins."""
 
     right: bool
     left: bool
 
 
-class RawReadings(BaseModel):
+class RawReadings(Schema):
     """The newest raw readings of all parts."""
 
     encoders: list[EncoderReading]
@@ -92,7 +93,7 @@ class RawReadings(BaseModel):
     leak: bool = Field(description="the leak sensor is wet")
 
 
-class BenchHands(BaseModel):
+class BenchHands(Schema):
     """The emulated robot on its workbench, as seen by the person at it."""
 
     fins: list[float] = Field(description="° from along the mount to the tip down, as they are")
@@ -104,7 +105,7 @@ class BenchHands(BaseModel):
     barometer_hpa: float
 
 
-class BringUpState(BaseModel):
+class BringUpState(Schema):
     """The bring-up as a whole."""
 
     run: str = Field(description=f"{RUN_MEANING}; empty before the first one")

@@ -3,12 +3,13 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.experiments.comm_test.results import Direction
 from server.features.comm_tests.reference import TableName
 from server.http.request_body import RequestBody
+from server.platform.schema_base import Schema
 
 Place = Literal["emulated", "robot"]
 State = Literal["running", "complete", "cancelled", "failed", "interrupted"]
@@ -19,7 +20,7 @@ TEXT_MAX = 60_000
 """Largest test document in characters."""
 
 
-class TestDocument(BaseModel):
+class TestDocument(Schema):
     """A shipped test document."""
 
     name: str
@@ -39,13 +40,13 @@ class CommTestStart(DocumentText):
     place: Place
 
 
-class Started(BaseModel):
+class Started(Schema):
     """The first run of the document."""
 
     run: int
 
 
-class CheckedTest(BaseModel):
+class CheckedTest(Schema):
     """A runnable test of a document; `seconds` is its cells' estimated duration in the test's time."""
 
     id: int
@@ -59,14 +60,14 @@ class CheckedTest(BaseModel):
     seconds: float
 
 
-class Check(BaseModel):
+class Check(Schema):
     """A document's problems, field by field, or its tests."""
 
     problems: list[EntryProblem]
     tests: list[CheckedTest]
 
 
-class RunSummary(BaseModel):
+class RunSummary(Schema):
     """A run; `sample` is the name of a shipped one, and empty for others."""
 
     id: int
@@ -85,7 +86,7 @@ class RunSummary(BaseModel):
     rate_min: Rate | None
 
 
-class Cell(BaseModel):
+class Cell(Schema):
     """One cell; delays and `seconds` (the test's time) in s, the counts of both ends together."""
 
     number: int
@@ -119,7 +120,7 @@ class CommTestRunDetails(RunSummary):
     results: list[Cell]
 
 
-class TableCell(BaseModel):
+class TableCell(Schema):
     """One entry of the thesis's tables."""
 
     baud: int
@@ -128,7 +129,7 @@ class TableCell(BaseModel):
     rate: Rate
 
 
-class ThesisTable(BaseModel):
+class ThesisTable(Schema):
     """One of the thesis's tables."""
 
     name: TableName

@@ -2,10 +2,12 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
+
+from server.platform.schema_base import Schema
 
 
-class DoorClientDetails(BaseModel):
+class DoorClientDetails(Schema):
     """A program that is connected."""
 
     name: str = Field(description="of its token")
@@ -18,7 +20,7 @@ class DoorClientDetails(BaseModel):
     in_control: bool
 
 
-class DoorDetails(BaseModel):
+class DoorDetails(Schema):
     """A door for other programs."""
 
     name: Literal["rosbridge", "foxglove", "ros2"]

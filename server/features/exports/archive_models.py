@@ -3,9 +3,10 @@
 import struct
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from robot_runtime.contract.topics import TIME
+from server.platform.schema_base import Schema
 from server.recording.schemas import GapKind
 
 CODES = "bBhHiIqQfd?"
@@ -26,7 +27,7 @@ Count = Annotated[int, Field(ge=0, le=MISSED_MAX)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,49}$")]
 
 
-class _Strict(BaseModel):
+class _Strict(Schema):
     model_config = ConfigDict(extra="ignore", allow_inf_nan=False)
 
 

@@ -3,10 +3,11 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from server.http.request_body import RequestBody
 from server.platform.csv_cells import Spreadsheet
+from server.platform.schema_base import Schema
 from server.recording.schemas import SessionNumber
 
 Compression = Literal["none", "zstd", "lz4"]
@@ -60,7 +61,7 @@ class NewExport(ExportOptions):
     session: SessionNumber
 
 
-class Job(BaseModel):
+class Job(Schema):
     """An export job; its file is stored for some days."""
 
     id: str

@@ -2,12 +2,13 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from robot_runtime.contract.commands import FilmQuality
 from robot_runtime.contract.limits import STREAM_RATE
 from server.features.film.choice import Coding
 from server.http.request_body import RequestBody
+from server.platform.schema_base import Schema
 
 
 class FilmOrder(RequestBody):
@@ -21,7 +22,7 @@ class FilmOrder(RequestBody):
     quality: FilmQuality
 
 
-class PictureBytes(BaseModel):
+class PictureBytes(Schema):
     """Bytes of one picture of a film, by quality."""
 
     low: float
@@ -29,7 +30,7 @@ class PictureBytes(BaseModel):
     high: float
 
 
-class FilmPlan(BaseModel):
+class FilmPlan(Schema):
     """The choice of a film that is in force, and the space that films need."""
 
     record: bool

@@ -2,10 +2,11 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from server.http.request_body import RequestBody
 from server.platform.runs import RUN_MEANING
+from server.platform.schema_base import Schema
 from server.recording.schemas import SessionNumber
 
 SESSIONS_MAX = 12
@@ -20,7 +21,7 @@ class IdentificationStart(RequestBody):
     )
 
 
-class IdentifiedNumber(BaseModel):
+class IdentifiedNumber(Schema):
     """A number of the craft before and after a fit."""
 
     name: str
@@ -33,7 +34,7 @@ class IdentifiedNumber(BaseModel):
     words: str = Field(description="the confidence, or the motion that is missing")
 
 
-class FittedSession(BaseModel):
+class FittedSession(Schema):
     """A session of a fit."""
 
     id: int
@@ -44,7 +45,7 @@ class FittedSession(BaseModel):
     )
 
 
-class PredictedChannel(BaseModel):
+class PredictedChannel(Schema):
     """A measured signal of the session that was left out, and its prediction; null breaks the lines."""
 
     name: str
@@ -56,7 +57,7 @@ class PredictedChannel(BaseModel):
     after: list[float | None]
 
 
-class CheckedSession(BaseModel):
+class CheckedSession(Schema):
     """The check on the session that was left out."""
 
     id: int
@@ -73,7 +74,7 @@ def describe_improvement(improvement: float) -> str:
     return f"{improvement:.1f} times better" if improvement >= 1 else f"{1 / improvement:.1f} times worse"
 
 
-class IdentificationResult(BaseModel):
+class IdentificationResult(Schema):
     """The result of a fit."""
 
     sessions: list[FittedSession]
@@ -85,13 +86,13 @@ class IdentificationResult(BaseModel):
     craft: str = Field(description="the craft file")
 
 
-class IdentificationStarted(BaseModel):
+class IdentificationStarted(Schema):
     """The fit that was started."""
 
     run: str = Field(description=RUN_MEANING)
 
 
-class ActiveIdentification(BaseModel):
+class ActiveIdentification(Schema):
     """A fit that runs."""
 
     run: str = Field(description=RUN_MEANING)
@@ -100,7 +101,7 @@ class ActiveIdentification(BaseModel):
     progress: float = Field(description="0 to 1")
 
 
-class EndedIdentification(BaseModel):
+class EndedIdentification(Schema):
     """The last fit."""
 
     run: str = Field(description=RUN_MEANING)
@@ -110,7 +111,7 @@ class EndedIdentification(BaseModel):
     result: IdentificationResult | None
 
 
-class AdoptedCraft(BaseModel):
+class AdoptedCraft(Schema):
     """The craft in force."""
 
     title: str = Field(description="empty for the default craft")
@@ -120,7 +121,7 @@ class AdoptedCraft(BaseModel):
     problem: str = Field(description="why no craft can be adopted now; empty if one can")
 
 
-class IdentificationState(BaseModel):
+class IdentificationState(Schema):
     """The running fit, the last one, and the craft in force."""
 
     active: ActiveIdentification | None
@@ -128,7 +129,7 @@ class IdentificationState(BaseModel):
     craft: AdoptedCraft
 
 
-class CraftChange(BaseModel):
+class CraftChange(Schema):
     """The answer to an adoption, or to its undoing."""
 
     affected: list[str]

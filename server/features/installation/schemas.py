@@ -3,12 +3,14 @@
 from datetime import datetime
 from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
+
+from server.platform.schema_base import Schema
 
 UpdatePhase = Literal["none", "asked", "running", "done", "failed"]
 
 
-class UpdateState(BaseModel):
+class UpdateState(Schema):
     """The versions on the robot's computer, and the present or last update or way back."""
 
     installed: bool = Field(description="as services, which can be updated from a page")

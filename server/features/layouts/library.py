@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 from sqlalchemy import Connection, delete, func, update
 from sqlalchemy.orm import defer
 from sqlmodel import col, select
@@ -16,6 +16,7 @@ from server.features.layouts.document import LayoutDocument
 from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.errors import NotFoundError
 from server.platform.models import LayoutRow
+from server.platform.schema_base import Schema
 from server.platform.store import Store, insert_row
 
 LAYOUTS_MOST = 200
@@ -25,7 +26,7 @@ class UnknownLayoutError(NotFoundError):
     """There is no such layout"""
 
 
-class SavedLayout(BaseModel):
+class SavedLayout(Schema):
     """A layout by its name."""
 
     id: int

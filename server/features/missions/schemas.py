@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field, JsonValue
+from pydantic import Field, JsonValue
 
 from robot_runtime.contract.documents import ParameterValue
 from robot_runtime.contract.missions import MissionPhase
@@ -13,6 +13,7 @@ from robot_runtime.missions.document import MissionDocument
 from robot_runtime.missions.plan import plan_mission
 from server.http.request_body import RequestBody
 from server.platform.runs import RUN_MEANING
+from server.platform.schema_base import Schema
 from server.recording.schemas import Session
 
 SEEDS_MAX = 100
@@ -35,7 +36,7 @@ class NewMission(MissionBody):
     )
 
 
-class MissionStepSummary(BaseModel):
+class MissionStepSummary(Schema):
     """A step of a mission."""
 
     path: str = Field(description='from 1 along the branches, as "3.1.2"; empty for the first step')
@@ -45,7 +46,7 @@ class MissionStepSummary(BaseModel):
     longest: float = Field(description="s that it takes at most")
 
 
-class MissionSummary(BaseModel):
+class MissionSummary(Schema):
     """The summary of a mission."""
 
     name: str
@@ -61,7 +62,7 @@ class MissionSummary(BaseModel):
     steps: list[MissionStepSummary]
 
 
-class PlannedMissionStep(BaseModel):
+class PlannedMissionStep(Schema):
     """One doing of a leaf, as it is expected if no step fails."""
 
     path: str = Field(description="of the step, as in its summary")
@@ -72,14 +73,14 @@ class PlannedMissionStep(BaseModel):
     known: bool = Field(description="false: its end depends on what happens, and is drawn 5 s on at most")
 
 
-class MissionPlanned(BaseModel):
+class MissionPlanned(Schema):
     """The planned depth over time."""
 
     steps: list[PlannedMissionStep] = Field(description="in the order of their beginnings")
     complete: bool = Field(description="false: it is longer, and the rest is left out")
 
 
-class MissionText(BaseModel):
+class MissionText(Schema):
     """A mission; `shipped` ones are part of the program, the others are in the data folder."""
 
     name: str
@@ -91,7 +92,7 @@ class MissionText(BaseModel):
     summary: MissionSummary | None = Field(description="null if it is not valid")
 
 
-class MissionVersion(BaseModel):
+class MissionVersion(Schema):
     """A version of the user's own mission."""
 
     version: int
@@ -100,7 +101,7 @@ class MissionVersion(BaseModel):
     text: str = Field(description="TOML")
 
 
-class MissionCheck(BaseModel):
+class MissionCheck(Schema):
     """A mission's problems by entry, or its summary."""
 
     problems: list[EntryProblem]
@@ -113,7 +114,7 @@ class MissionCheck(BaseModel):
     table: dict[str, JsonValue] | None = Field(description="what the TOML says; null where it is no TOML")
 
 
-class NodeField(BaseModel):
+class NodeField(Schema):
     """A field of a leaf or a branch."""
 
     name: str
@@ -126,7 +127,7 @@ class NodeField(BaseModel):
     default: ParameterValue | None
 
 
-class MissionNodeKind(BaseModel):
+class MissionNodeKind(Schema):
     """A leaf or a branch that documents may have."""
 
     do: str
@@ -137,7 +138,7 @@ class MissionNodeKind(BaseModel):
     fields: list[NodeField]
 
 
-class PastMissionRun(BaseModel):
+class PastMissionRun(Schema):
     """A run of a mission that a session recorded. Times are s since the session's start."""
 
     session: Session
@@ -156,7 +157,7 @@ class TrialStart(RequestBody):
     seeds: Annotated[int, Field(ge=1, le=SEEDS_MAX)] = 20
 
 
-class MissionTrialResult(BaseModel):
+class MissionTrialResult(Schema):
     """The outcome with one seed. `phase` is null where the mission did not begin; `text` says why."""
 
     seed: int
@@ -168,7 +169,7 @@ class MissionTrialResult(BaseModel):
     curve: list[float] = Field(description="depth, m, twice a second from its start to its end")
 
 
-class MissionTrial(BaseModel):
+class MissionTrial(Schema):
     """The running trial, or the last one."""
 
     run: str = Field(description=f"{RUN_MEANING}; empty: there was none")

@@ -3,7 +3,7 @@
 from dataclasses import fields
 from typing import Any
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.commands import RobotCommand, http_commands, is_required
 from robot_runtime.contract.documents import State
@@ -22,12 +22,13 @@ from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
 from server.platform.errors import UnavailableError
+from server.platform.schema_base import Schema
 from server.stream.bridge import Bridge, RuntimeSilentError
 
 router = Operations(prefix="/api")
 
 
-class LinkFault(BaseModel):
+class LinkFault(Schema):
     """The last fault of the serial line, and the frames before it."""
 
     time: float = Field(description="s, steady clock")
@@ -35,7 +36,7 @@ class LinkFault(BaseModel):
     frames: list[Dissection]
 
 
-class LinkFrames(BaseModel):
+class LinkFrames(Schema):
     """The last hundred frames each way since the port was opened, in the order of time."""
 
     time: float = Field(description="now, s, steady clock")

@@ -5,10 +5,9 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from pydantic import BaseModel
-
 from robot_runtime.contract.text_input import TextError, load_text
 from server.platform.errors import NotFoundError
+from server.platform.schema_base import Schema
 
 SCRIPT_BYTES_MAX = 200_000
 PANELS_SHOWN = 200
@@ -19,14 +18,14 @@ class UnknownPanelError(NotFoundError):
     """There is no such panel, or it cannot be read"""
 
 
-class OwnPanel(BaseModel):
+class OwnPanel(Schema):
     """A panel, named by its file; `problem` is the reason why it cannot be shown."""
 
     name: str
     problem: str = ""
 
 
-class OwnPanelScript(BaseModel):
+class OwnPanelScript(Schema):
     """A panel's file: an ES module."""
 
     name: str

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from time import time
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ConfigDict, ValidationError
 from sqlalchemy import Connection, delete
 from sqlmodel import col, select
 
@@ -18,6 +18,7 @@ from server.driving.schemas import Value
 from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Values
 from server.platform.errors import InvalidError, NotFoundError
 from server.platform.models import ProfileRow
+from server.platform.schema_base import Schema
 from server.platform.store import Store, insert_row
 
 FORMAT = 1
@@ -33,7 +34,7 @@ class ProfileError(InvalidError):
     """The file is no profile of this version"""
 
 
-class ProfileFile(BaseModel):
+class ProfileFile(Schema):
     """Content of a profile's file; `version` is that of the software that wrote it."""
 
     model_config = ConfigDict(extra="ignore")

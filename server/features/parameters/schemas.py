@@ -3,10 +3,11 @@
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import BaseModel, Field, StringConstraints
+from pydantic import Field, StringConstraints
 
 from server.driving.schemas import Value
 from server.http.request_body import RequestBody
+from server.platform.schema_base import Schema
 
 PARAMETERS_MAX = 1000
 
@@ -22,7 +23,7 @@ class Undo(RequestBody):
     change: int
 
 
-class Profile(BaseModel):
+class Profile(Schema):
     """Parameters saved under a name."""
 
     id: int
@@ -46,7 +47,7 @@ class ProfileText(RequestBody):
     text: Annotated[str, Field(max_length=200_000)]
 
 
-class Imported(BaseModel):
+class Imported(Schema):
     """An imported profile, and its parameters that this robot does not know."""
 
     profile: Profile

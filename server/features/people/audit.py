@@ -7,7 +7,7 @@ from itertools import islice
 from typing import Annotated
 
 from fastapi import Depends, Query, Response
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
 from server.http.audit import AuditLog
 from server.http.dependencies import Provided
@@ -15,6 +15,7 @@ from server.http.operations import Operations
 from server.http.sign_in.policy import Need
 from server.platform.audit_file import AuditEntry, read_entries
 from server.platform.csv_cells import STYLES, CsvStyle, Spreadsheet, escape_formula
+from server.platform.schema_base import Schema
 from server.platform.searching import fold
 
 LISTED_MOST = 200
@@ -26,7 +27,7 @@ Words = Annotated[str, Query(max_length=WORDS_MAX)]
 Moment = Annotated[float | None, Query(allow_inf_nan=False, description="s since 1970")]
 
 
-class AuditFilter(BaseModel):
+class AuditFilter(Schema):
     """Conditions on entries of the audit log."""
 
     model_config = ConfigDict(frozen=True)
@@ -46,7 +47,7 @@ class AuditFilter(BaseModel):
         return fold(self.who) in fold(named) and fold(self.what) in fold(did)
 
 
-class AuditList(BaseModel):
+class AuditList(Schema):
     """Entries, newest first; `more`: older matching entries exist."""
 
     entries: list[AuditEntry]

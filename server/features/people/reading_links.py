@@ -4,7 +4,7 @@ import time
 from typing import Annotated
 
 from fastapi import Query, Request, Response
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from server.features.people.routes import describe_caller, set_cookie
 from server.features.people.schemas import Paired
@@ -15,6 +15,7 @@ from server.http.sign_in.access import Access, LinkEndedError
 from server.http.sign_in.devices import DAY_SECONDS, Device, UnknownLinkError
 from server.http.sign_in.identity import IDENTITY, Caller
 from server.http.sign_in.policy import Need
+from server.platform.schema_base import Schema
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.schemas import SessionNumber
@@ -33,7 +34,7 @@ class NewReadingLink(RequestBody):
     ends: Annotated[float, Field(ge=0, le=1e11, allow_inf_nan=False)]
 
 
-class ReadingLink(BaseModel):
+class ReadingLink(Schema):
     """A reading link; times in s since 1970. `used` is null where nobody has opened it."""
 
     id: int
@@ -44,7 +45,7 @@ class ReadingLink(BaseModel):
     ended: Annotated[str, Field(description="why it lets nobody in any more; else empty")]
 
 
-class MadeReadingLink(BaseModel):
+class MadeReadingLink(Schema):
     """A reading link with its token, which is shown only this once."""
 
     token: str

@@ -2,11 +2,12 @@
 
 from typing import Annotated
 
-from pydantic import AfterValidator, BaseModel, Field
+from pydantic import AfterValidator, Field
 
 from server.http.request_body import RequestBody
 from server.http.sign_in.identity import Identity, Kind, Role, Scope
 from server.http.sign_in.names import NAME_LENGTH_MAX, clean_name
+from server.platform.schema_base import Schema
 
 TOKEN_DAYS, TOKEN_DAYS_MAX = 90, 3650
 
@@ -14,7 +15,7 @@ TOKEN_DAYS, TOKEN_DAYS_MAX = 90, 3650
 Name = Annotated[str, Field(max_length=NAME_LENGTH_MAX), AfterValidator(clean_name)]
 
 
-class CallerDetails(BaseModel):
+class CallerDetails(Schema):
     """The caller, and the robot; `pairing_open` is true while a pairing code is valid."""
 
     signed_in: bool
@@ -56,7 +57,7 @@ class NewCode(RequestBody):
     role: Role = "viewer"
 
 
-class MadeCode(BaseModel):
+class MadeCode(Schema):
     """A code for one pairing; `expires` in s since 1970, `qr_svg` is a picture of the link.
 
     `other_links` do the same at the server's other addresses; `only_here`: no other computer reaches any.
@@ -71,7 +72,7 @@ class MadeCode(BaseModel):
     qr_svg: str
 
 
-class DeviceDetails(BaseModel):
+class DeviceDetails(Schema):
     """A paired browser or program; times in s since 1970."""
 
     id: int
@@ -105,7 +106,7 @@ class NewToken(RequestBody):
     ] = TOKEN_DAYS
 
 
-class MadeToken(BaseModel):
+class MadeToken(Schema):
     """A program's token, shown only this once."""
 
     token: str

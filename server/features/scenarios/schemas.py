@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from robot_runtime.contract.problems import EntryProblem
 from robot_runtime.contract.toml_text import BYTES_MAX
@@ -10,6 +10,7 @@ from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.experiments.scenario.document import Scenario
 from server.http.request_body import RequestBody
 from server.platform.runs import RUN_MEANING
+from server.platform.schema_base import Schema
 
 Place = Literal["live", "simulated"]
 BoardKind = Literal["host", "emulated"]
@@ -19,7 +20,7 @@ Run = Annotated[str, Field(description=RUN_MEANING)]
 Text = Annotated[str, Field(max_length=BYTES_MAX, description="TOML")]
 
 
-class ScenarioText(BaseModel):
+class ScenarioText(Schema):
     """A scenario; `shipped` ones are part of the program, the others are in the data folder."""
 
     name: str
@@ -46,7 +47,7 @@ class NewScenario(ScenarioDocument):
     )
 
 
-class ScenarioEvent(BaseModel):
+class ScenarioEvent(Schema):
     """An event of a scenario."""
 
     at: float = Field(description="s")
@@ -54,7 +55,7 @@ class ScenarioEvent(BaseModel):
     words: str
 
 
-class ScenarioSummary(BaseModel):
+class ScenarioSummary(Schema):
     """The summary of a scenario."""
 
     name: str
@@ -70,7 +71,7 @@ class ScenarioSummary(BaseModel):
 EventFieldKind = Literal["number", "whole", "text", "switch", "choice", "value"]
 
 
-class EventField(BaseModel):
+class EventField(Schema):
     """A field of an event; a `value` is a list or a table, written as TOML."""
 
     name: str
@@ -82,7 +83,7 @@ class EventField(BaseModel):
     required: bool
 
 
-class ScenarioEventKind(BaseModel):
+class ScenarioEventKind(Schema):
     """A kind of event, beside its time."""
 
     do: str
@@ -90,7 +91,7 @@ class ScenarioEventKind(BaseModel):
     fields: list[EventField]
 
 
-class ScenarioCheck(BaseModel):
+class ScenarioCheck(Schema):
     """A scenario's problems, field by field, or its summary."""
 
     problems: list[EntryProblem]
@@ -108,13 +109,13 @@ class ScenarioStart(RequestBody):
     board: BoardKind = "host"
 
 
-class ScenarioStarted(BaseModel):
+class ScenarioStarted(Schema):
     """The run that was started."""
 
     run: Run
 
 
-class ActiveRun(BaseModel):
+class ActiveRun(Schema):
     """The active run; times in s of the scenario."""
 
     run: Run
@@ -130,7 +131,7 @@ class ActiveRun(BaseModel):
     events: list[ScenarioEvent]
 
 
-class QueuedRun(BaseModel):
+class QueuedRun(Schema):
     """A queued run."""
 
     run: Run
@@ -138,7 +139,7 @@ class QueuedRun(BaseModel):
     title: str
 
 
-class EndedRun(BaseModel):
+class EndedRun(Schema):
     """The run that ended last; `session` is null if it recorded nothing."""
 
     run: Run
@@ -151,7 +152,7 @@ class EndedRun(BaseModel):
     problem: str
 
 
-class ScenarioState(BaseModel):
+class ScenarioState(Schema):
     """The active run, the queue and the last run."""
 
     active: ActiveRun | None

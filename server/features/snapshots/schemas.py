@@ -1,9 +1,11 @@
 """Schemas of snapshots in the interface."""
 
-from pydantic import BaseModel, Field
+from pydantic import Field
+
+from server.platform.schema_base import Schema
 
 
-class TakenSnapshot(BaseModel):
+class TakenSnapshot(Schema):
     """A snapshot that has just been stored."""
 
     session: int = Field(description="the session that keeps it")

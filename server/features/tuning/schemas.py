@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, FiniteFloat
+from pydantic import Field, FiniteFloat
 
 from robot_runtime.contract.commands import (
     ExperimentCommand,
@@ -23,6 +23,7 @@ from robot_runtime.errors import RefusedError
 from server.features.tuning.curve import TuningCurve
 from server.http.request_body import RequestBody
 from server.metrics.figure import Figure, FigureMeaning
+from server.platform.schema_base import Schema
 
 ENDED = ("complete", "stopped", "failed")
 """The phases in which an experiment is over."""
@@ -82,7 +83,7 @@ def _command(cls: type[ExperimentCommand], start: Limits, run: int) -> Experimen
 Start = Annotated[StepStart | RelayStart, Field(discriminator="kind")]
 
 
-class ControllerInForce(BaseModel):
+class ControllerInForce(Schema):
     """The controller in force, with its gains."""
 
     controller: str
@@ -90,7 +91,7 @@ class ControllerInForce(BaseModel):
     gains: dict[str, float]
 
 
-class MeasuredLimitCycle(BaseModel):
+class MeasuredLimitCycle(Schema):
     """Result of a relay experiment; medians over its cycles, values in the loop's unit."""
 
     cycles: int
@@ -103,7 +104,7 @@ class MeasuredLimitCycle(BaseModel):
     remarks: list[str] = Field(description="reasons to doubt these figures")
 
 
-class Proposal(BaseModel):
+class Proposal(Schema):
     """Gains by a named rule."""
 
     rule: str
@@ -114,7 +115,7 @@ class Proposal(BaseModel):
     problem: str = Field(description="why these cannot be set; empty if they can")
 
 
-class TuningRun(BaseModel):
+class TuningRun(Schema):
     """A run, without its curve."""
 
     id: int
@@ -137,14 +138,14 @@ class TuningRunDetail(TuningRun):
     proposals: list[Proposal] = Field(description="of a relay experiment: gains of a PID by several rules")
 
 
-class TuningRuns(BaseModel):
+class TuningRuns(Schema):
     """The runs on a loop, newest first, and the meanings of their figures."""
 
     figures: list[FigureMeaning]
     runs: list[TuningRun]
 
 
-class TuningStarted(BaseModel):
+class TuningStarted(Schema):
     """The number of the started run."""
 
     run: int
@@ -156,7 +157,7 @@ class TuningName(RequestBody):
     name: RunName
 
 
-class ActiveTuning(BaseModel):
+class ActiveTuning(Schema):
     """The active run."""
 
     run: int
@@ -170,7 +171,7 @@ class ActiveTuning(BaseModel):
     settings: dict[str, Any]
 
 
-class TuningState(BaseModel):
+class TuningState(Schema):
     """The active run, and the last one since the server's start."""
 
     active: ActiveTuning | None
@@ -185,7 +186,7 @@ class PredictionQuery(RequestBody):
     gains: dict[str, FiniteFloat] = Field(description="by name; what is left out has its default")
 
 
-class PredictedStep(BaseModel):
+class PredictedStep(Schema):
     """A predicted step response: at most 30 s after the step."""
 
     model: str = Field(description="title of the craft that was simulated")

@@ -2,10 +2,11 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import ConfigDict, Field, FiniteFloat
 
 from robot_runtime.contract.vision_settings import ColourRange, Share, VisionSettings
 from server.http.request_body import RequestBody
+from server.platform.schema_base import Schema
 
 if TYPE_CHECKING:
     # The command is made of fields at its definition, which no type checker sees.
@@ -16,7 +17,7 @@ else:
 TEXT_MAX = 20_000
 
 
-class VisionSetup(BaseModel):
+class VisionSetup(Schema):
     """The settings now, and those of robot.toml."""
 
     settings: VisionSettings
@@ -46,7 +47,7 @@ class PickPlace(RequestBody):
     ] = 0.02
 
 
-class PickedColour(BaseModel):
+class PickedColour(Schema):
     """A colour range, the share of the picture within it, and the mask that it would have."""
 
     colour: ColourRange

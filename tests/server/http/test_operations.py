@@ -1,8 +1,9 @@
 from typing import Any
 
 from fastapi import FastAPI
+from httpx import ASGITransport, AsyncClient
 
-from server.http.operations import Operations
+from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need, list_needs
 from server.platform.errors import ApiError
 from server.recording.session import UnknownSessionError
@@ -65,3 +66,26 @@ def test_documented_answers_come_from_the_errors() -> None:
         "404": "There is no such session",
         "409": "Refused now",
     }
+
+
+async def test_a_route_is_built_for_its_first_request_and_others_are_found_without() -> None:
+    router = Operations(prefix="/api")
+
+    @router.operation("GET /things/{number}", Need.NOTHING)
+    def get_thing(number: Identifier) -> int:
+        """Return a thing."""
+        return number
+
+    @router.operation("DELETE /things/{number}", Need.NOTHING)
+    def delete_thing(number: Identifier) -> None:
+        """Delete a thing."""
+
+    app = FastAPI()
+    app.router.routes.extend(routes := router.build())
+    assert not any("dependant" in vars(route) for route in routes)
+    async with AsyncClient(transport=ASGITransport(app), base_url="http://robot") as client:
+        assert (await client.get("/api/things/3")).json() == 3
+        assert (await client.get("/api/things/none")).status_code == 422
+        assert (await client.post("/api/things/3")).status_code == 405
+    assert ["dependant" in vars(route) for route in routes] == [True, False]
+    assert not hasattr(routes[1], "no_such_attribute")
