@@ -18,6 +18,7 @@ from robot_runtime.contract.topics import PICTURE, WATCHABLE, AnyTopic, Kind
 from robot_runtime.transport.blocks import Block
 from server.http.security import POLICY_VIOLATION
 from server.http.sign_in.identity import SHELL, Identity
+from server.http.websocket_protocol import binary_frame
 from server.stream.broadcast import BroadcastBuffer, TopicHistory, Totals
 
 HISTORY_SECONDS = 600.0
@@ -42,6 +43,8 @@ TRY_AGAIN_LATER = 1013
 """WebSocket close code for a client that the server cannot serve any longer."""
 
 Send = Callable[[bytes | str], Awaitable[None]]
+Offer = Callable[[bytes], bool]
+"""Sends a `binary_frame` at once; False where it would have to wait."""
 _NO_PICTURE = (0, b"")
 
 
@@ -56,13 +59,16 @@ class EvictedError(Exception):
 class Client:
     """One open socket: its positions in the buffers and its own messages."""
 
-    def __init__(self, hub: "Hub", send: Send, clock: Clock, caller: Identity) -> None:
+    def __init__(self, hub: "Hub", send: Send, offer: Offer, clock: Clock, caller: Identity) -> None:
         self.device = caller.device
         self.is_operator = caller.role == "operator"
         self.sending_since: float | None = None
         self.dismissal: EvictedError | None = None
         self._hub = hub
         self._raw_send = send
+        self._offer = offer
+        self._at_rest = False
+        """True while everything is sent, and the sender waits."""
         self._clock = clock
         self._wake = asyncio.Event()
         self._answers: deque[str] = deque()
@@ -90,6 +96,14 @@ class Client:
         """Wake the sender: a buffer has a new message."""
         self._wake.set()
 
+    def offer_rows(self, frame: bytes) -> None:
+        """Send the newest rows at once, in a frame, or wake the sender where something waits before them."""
+        rows = self._hub.rows
+        if self._at_rest and not self._wake.is_set() and self._rows == rows.end - 1 and self._offer(frame):
+            self._rows, self._seen = rows.end, rows.totals
+        else:
+            self._wake.set()
+
     async def run(self) -> None:
         """Send the history, then live messages. Raise EvictedError where the client is too slow."""
         await self._send_history()
@@ -97,7 +111,9 @@ class Client:
             while self._behind:
                 await self._send_one()
             self._wake.clear()
+            self._at_rest = True
             await self._wake.wait()
+            self._at_rest = False
 
     async def _send_history(self) -> None:
         tick, start = -1, self._clock.now() - FIRST_SECONDS
@@ -204,6 +220,7 @@ class Hub:
         now = self._clock.now()
         rows: list[Block] = []
         documents: list[Block] = []
+        pictured = False
         for block in blocks:
             if block.topic.only_recorded:
                 continue
@@ -211,6 +228,7 @@ class Hub:
                 self._picture_number += 1
                 if block.topic in self._watched:
                     self.pictures[block.topic] = (self._picture_number, block.data)
+                    pictured = True
                 continue
             self.history.add(block, self.tick, now)
             (rows if block.topic.kind is Kind.ROWS else documents).append(block)
@@ -220,8 +238,13 @@ class Hub:
             self.rows.append(rows)
         if documents:
             self.documents.append(documents)
-        for client in self._clients:
-            client.wake()
+        elif rows:
+            frame = binary_frame(self.rows.get(self.rows.end - 1).data)
+            for client in self._clients:
+                client.offer_rows(frame)
+        if documents or pictured:
+            for client in self._clients:
+                client.wake()
 
     def notify(self, message: dict[str, Any]) -> None:
         """Send a message to all clients, now and on connecting; of each `op` only the newest."""
@@ -254,6 +277,7 @@ class Hub:
     async def serve(
         self,
         send: Send,
+        offer: Offer,
         greeting: dict[str, Any],
         receive: Callable[[Client], Awaitable[None]],
         caller: Identity,
@@ -262,7 +286,7 @@ class Hub:
         reason where it is disconnected.
         """
         self._check_room(caller)
-        client = Client(self, send, self._clock, caller)
+        client = Client(self, send, offer, self._clock, caller)
         client.answer(greeting)
         for kind, text in self._newest.items():
             client.notify(kind, text)

@@ -23,7 +23,7 @@ from server.http.websocket_protocol import BINARY
 from server.platform.settings import Settings
 from server.stream.bridge import Bridge
 from server.stream.budget import Budgets
-from server.stream.hub import EvictedError, Hub, Send
+from server.stream.hub import EvictedError, Hub, Offer, Send
 from server.stream.socket_ends import close_with_reason, end_after
 
 ABNORMAL_CLOSURE = 1006
@@ -68,7 +68,7 @@ async def live(
     offered = PAGE_PROTOCOL in socket.scope["subprotocols"]
     await socket.accept(subprotocol=PAGE_PROTOCOL if offered else None)
 
-    send = _sender(socket)
+    send, offer = _senders(socket)
     try:
         # Access may have been revoked while the socket opened; from here on the hub dismisses it.
         if (changed := access.explain_change(caller)) is not None:
@@ -76,7 +76,7 @@ async def live(
         with arbiter.page(caller) as owner:
             budget = budgets.of(caller)
             listen = LiveConnection(socket, owner, hub, arbiter, bridge, audit, clock, budget).listen
-            serving = hub.serve(send, greeting(owner), listen, caller)
+            serving = hub.serve(send, offer, greeting(owner), listen, caller)
             await end_after(access.devices.count_seconds(caller.device), serving)
     except WebSocketDisconnect:
         return
@@ -84,10 +84,11 @@ async def live(
         await close_with_reason(socket, reason)
 
 
-def _sender(socket: WebSocket) -> Send:
-    """Return the function that sends binary messages, past the application's layers where possible."""
+def _senders(socket: WebSocket) -> tuple[Send, Offer]:
+    """Return the functions that send messages, past the application's layers where possible."""
     extension = socket.scope.get("extensions", {}).get(BINARY)
     send_binary: Callable[[bytes], Awaitable[None]] = extension["send"] if extension else socket.send_bytes
+    offer: Offer = extension["offer"] if extension else lambda _: False
 
     async def send(data: bytes | str) -> None:
         if isinstance(data, str):
@@ -98,4 +99,4 @@ def _sender(socket: WebSocket) -> Send:
         except OSError as problem:
             raise WebSocketDisconnect(ABNORMAL_CLOSURE) from problem
 
-    return send
+    return send, offer

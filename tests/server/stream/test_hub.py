@@ -17,13 +17,20 @@ from tests.server.waiting import SECONDS, until
 class HubPage:
     """A page's end of a socket, whose reading can be paused."""
 
+    offers = True
+    """Whether the socket takes frames at once."""
+
     def __init__(self, hub: Hub, caller: Identity = SHELL) -> None:
         self.received: list[bytes | str] = []
+        self.sent: list[bytes | str] = []
+        """The same objects as the hub has sent, frames as they are."""
         self.reading = asyncio.Event()
         self.reading.set()
         self.gone = asyncio.Event()
         self.client: Client | None = None
-        self.task = asyncio.create_task(hub.serve(self._send, {"op": "hello"}, self._listen, caller))
+        self.task = asyncio.create_task(
+            hub.serve(self._send, self._offer, {"op": "hello"}, self._listen, caller)
+        )
 
     @property
     def texts(self) -> list[dict[str, Any]]:
@@ -47,13 +54,26 @@ class HubPage:
 
     async def _send(self, data: bytes | str) -> None:
         await self.reading.wait()
+        self.sent.append(data)
         self.received.append(data)
         # As on a real connection, sending lets others run.
         await asyncio.sleep(0)
 
+    def _offer(self, frame: bytes) -> bool:
+        if self.offers and self.reading.is_set():
+            self.sent.append(frame)
+            self.received.append(frame[{126: 4, 127: 10}.get(frame[1], 2) :])
+            return True
+        return False
+
     async def _listen(self, client: Client) -> None:
         self.client = client
         await self.gone.wait()
+
+
+@pytest.fixture(params=[True, False], ids=["at once", "in turn"], autouse=True)
+def offers(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(HubPage, "offers", request.param)
 
 
 @pytest.fixture
@@ -112,7 +132,7 @@ async def test_all_pages_get_the_same_bytes(hub: Hub) -> None:
     await until(lambda: hub.clients == 2, "both pages")
     hub.add([depth_block(0, 1), depth_block(1, 1)])
     await until(lambda: all(page.numbers("depth") for page in pages), "the rows")
-    assert pages[0].received[-1] is pages[1].received[-1]
+    assert pages[0].sent[-1] is pages[1].sent[-1]
     for page in pages:
         await page.leave()
 
@@ -187,6 +207,7 @@ async def test_a_page_that_stops_reading_is_disconnected_without_effect_on_other
     stalled.reading.clear()
     hub.add([depth_block(0, 1)])
     await until(lambda: other.numbers("depth") == [0], "the other page")
+    await until(lambda: stalled.client is not None and stalled.client.sending_since is not None, "a send")
     clock.forward(4.9)
     await asyncio.sleep(0.02)
     assert not stalled.task.done()
