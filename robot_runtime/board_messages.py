@@ -1,6 +1,8 @@
 """The messages of the board: published, and handed to the parts that they are for."""
 
+from collections import defaultdict
 from collections.abc import Callable, Sequence
+from math import inf
 
 from robot_runtime.calibration.calibrator import Calibrator
 from robot_runtime.contract.board_events import describe_event
@@ -23,6 +25,10 @@ from robot_runtime.link.session import BoardMessage
 from robot_runtime.parameters.board import BoardParameters
 from robot_runtime.transport.bus import Bus
 
+DECODE_EVERY = {Depth.type: 1, Imu.type: 3}
+"""Of a batch's samples the newest and every so many before it are decoded for the checks for faults: decoding
+all costs a Pi CPU time."""
+
 
 class BoardMessages:
     """Handles batches of messages; `announce` is called when a parameter is confirmed."""
@@ -43,9 +49,9 @@ class BoardMessages:
         self._parameters = parameters
         self._announce = announce
         detector = supervisor.detector
-        self._sensed: dict[int, Callable[[bytes], None]] = {
-            Depth.type: lambda payload: detector.see_depth(Depth.from_bytes(payload)),
-            Imu.type: lambda payload: detector.see_imu(Imu.from_bytes(payload)),
+        self._sensed: dict[int, Callable[[bytes, float], None]] = {
+            Depth.type: lambda payload, age: detector.see_depth(Depth.from_bytes(payload), age),
+            Imu.type: lambda payload, age: detector.see_imu(Imu.from_bytes(payload), age),
         }
         self._handlers: dict[int, Callable[[float, bytes], None]] = {
             Status.type: self._see_status,
@@ -61,18 +67,20 @@ class BoardMessages:
     def handle(self, messages: Sequence[BoardMessage]) -> None:
         """Publish the messages, and pass each on."""
         self._supervisor.detector.see_messages()
-        newest: dict[int, bytes] = {}
+        samples: defaultdict[int, list[tuple[float, bytes]]] = defaultdict(list)
+        newest = -inf
         for message in messages:
             type_, time, payload = message.type, message.time, message.payload
             if (topic := TELEMETRY.get(type_)) is not None:
                 self._bus.publish_row(topic, time, payload)
+                newest = max(newest, time)
             if type_ in self._sensed:
-                newest[type_] = payload
+                samples[type_].append((time, payload))
             elif (handle := self._handlers.get(type_)) is not None:
                 handle(time, payload)
-        # Only the newest of a batch, since decoding a hundred a second costs a Pi CPU time.
-        for type_, payload in newest.items():
-            self._sensed[type_](payload)
+        for type_, batch in samples.items():
+            for time, payload in reversed(batch[:: -DECODE_EVERY[type_]]):
+                self._sensed[type_](payload, newest - time)
 
     def _check_motor(self, _time: float, record: bytes) -> None:
         if self._supervisor.mode == "test":

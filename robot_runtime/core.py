@@ -73,7 +73,8 @@ class Core:
     sensors. With `heartbeat` (s) a server that is silent for longer is a fault.
 
     `line` calls `take_messages` and `link_changed`. Threads of their own may run: `line`, `take_pilot`,
-    `publish_tick`, `vision`, and `control_tick` together with `pilot_tick`.
+    `publish_tick`, `vision`, and `control_tick` together with `pilot_tick`. `step` stands for `control_tick`
+    where the board is heard, controlled and published in one.
     """
 
     def __init__(
@@ -97,6 +98,8 @@ class Core:
         self._piloted = False
         self._flushed = -inf
         """s; when the messages of the board took everything queued along."""
+        self._stepping = False
+        """The step sends what is queued at its end."""
         self.line = line
         self.board_parameters = BoardParameters(clock, line.send, config.link.baud)
         self.calibrator = Calibrator(
@@ -203,6 +206,16 @@ class Core:
             log.exception("a control tick failed")
             self.supervisor.fail("control_failed")
 
+    def step(self, take_newest: Callable[[], None]) -> None:
+        """Take what the board has sent, run a control tick, and send all of it in one message."""
+        self._stepping = True
+        take_newest()
+        self.control_tick()
+        self._send_requests()
+        self._publish_due()
+        self._stepping = False
+        self._flush()
+
     def take_pilot(self, payload: bytes) -> None:
         """Send the pilot's input at once, without waiting for the next tick."""
         if self.supervisor.pilot.take(payload):
@@ -235,12 +248,24 @@ class Core:
         Where the board is silent it also checks for faults and sends what is queued. Otherwise the board's
         messages do both, some thirty times a second: one message more would wake the server once more.
         """
-        now = self.clock.now()
-        heard = now - self._flushed < PUBLISH_EVERY
+        heard = self.clock.now() - self._flushed < PUBLISH_EVERY
         if not heard:
             self.check_faults()
-            self.board_parameters.tick()
-            self.calibrator.board.tick()
+            self._send_requests()
+        self._publish_due()
+        if not heard:
+            self.outbox.flush()
+
+    def _send_requests(self) -> None:
+        self.board_parameters.tick()
+        self.calibrator.board.tick()
+
+    def _flush(self) -> None:
+        self.outbox.flush()
+        self._flushed = self.clock.now()
+
+    def _publish_due(self) -> None:
+        now = self.clock.now()
         for index, (seconds, action) in enumerate(self._every):
             if now >= self._due[index]:
                 self._due[index] = now + seconds
@@ -249,8 +274,6 @@ class Core:
             self._state_changed.clear()
             self.bus.publish_document(STATE, self.state())
             self._publish_parameters()
-        if not heard:
-            self.outbox.flush()
 
     def state(self) -> State:
         """Return the state of the robot."""
@@ -350,11 +373,11 @@ class Core:
     def take_messages(self, messages: list[BoardMessage]) -> None:
         """Handle and publish the board's messages."""
         self._board.handle(messages)
-        self.board_parameters.tick()
-        self.calibrator.board.tick()
+        if self._stepping:
+            return
+        self._send_requests()
         self.check_faults()
-        self.outbox.flush()
-        self._flushed = self.clock.now()
+        self._flush()
 
     def link_changed(self) -> None:
         """Publish that the connection was established or lost, and soon the link's counters."""

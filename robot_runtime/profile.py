@@ -1,5 +1,7 @@
 """The profile: a computer with little processor time looks at smaller pictures, less often.
 
+It hears the board once a control tick, and not some thirty times a second.
+
 It also has little memory: there the runner of the server does not hold the server's libraries
 (`server.startup`).
 
@@ -12,6 +14,8 @@ from dataclasses import replace
 from typing import Literal
 
 from robot_runtime.config import Config
+from robot_runtime.contract.packets import Depth
+from robot_runtime.link.timing import periods
 from robot_runtime.transport.lifetime import memory_bytes
 
 Profile = Literal["full", "lean"]
@@ -49,6 +53,20 @@ def fit(config: Config, profile: Profile) -> Config:
         stream_rate=min(now.stream_rate, LEAN_STREAM_RATE),
     )
     return replace(config, vision=vision)
+
+
+def in_step(config: Config) -> bool:
+    """Return True if the board is heard once a control tick.
+
+    Not where that would be late: for a simulator in the loop, which moves by what the board sends, or on a
+    line so slow that ticks have no depth of their own.
+    """
+    depth_period = periods(config.link.baud)[Depth]
+    return (
+        config.robot.profile == "lean"
+        and config.robot.mode != "hil"
+        and depth_period <= 1 / config.control.rate
+    )
 
 
 def profile_here(config: Config) -> Profile:

@@ -13,10 +13,10 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.control.hil_feed import HilFeed
 from robot_runtime.control.pilot import PILOT
+from robot_runtime.control_thread import ControlThread
 from robot_runtime.core import PUBLISH_EVERY, Core
-from robot_runtime.link.serial_link import SerialLink
-from robot_runtime.periodic_task import PeriodicTask
-from robot_runtime.service_manager import ServiceManager
+from robot_runtime.link.serial_link import STEP_PATIENCE, SerialLink
+from robot_runtime.profile import in_step
 from robot_runtime.transport.lifetime import HEARTBEAT
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.transport.replay_cache import ReplayCache
@@ -44,12 +44,16 @@ class RobotRuntime(Core):
         self.cache = ReplayCache(messages.run, clock)
         self._messages = messages
         self._closing = False
-        self._ending = threading.Event()
-        self._service = ServiceManager()
         # Any number that differs from the last run's.
         epoch = time.time_ns() // 1_000_000 & 0xFFFF
         self.connection = SerialLink(
-            port, config.link.baud, clock, epoch, self.take_messages, self.link_changed
+            port,
+            config.link.baud,
+            clock,
+            epoch,
+            self.take_messages,
+            self.link_changed,
+            in_step=in_step(config),
         )
         self.hil: HilFeed | None = None
         if config.robot.mode == "hil":
@@ -116,14 +120,14 @@ class RobotRuntime(Core):
         """Run until `close` is called, then disarm the board and close everything."""
         self.connection.start()
         self.vision.start()
-        control = threading.Thread(target=self._control_loop, name="control", daemon=True)
+        control = ControlThread(self, self.connection, self.close)
         control.start()
         try:
             while not self._closing:
-                time.sleep(PUBLISH_EVERY)
+                time.sleep(STEP_PATIENCE if self.connection.in_step else PUBLISH_EVERY)
                 self.publish_tick()
         finally:
-            self._ending.set()
+            control.end()
             self.supervisor.stop("The runtime ended.")
             control.join()
             self.vision.close()
@@ -156,15 +160,3 @@ class RobotRuntime(Core):
         self.publish_event(
             Event(time=self.clock.now(), kind="vision", severity="caution", text=f"Vision: {text}.")
         )
-
-    def _control_loop(self) -> None:
-        period = 1 / self.config.control.rate
-        ticks = PeriodicTask(self.clock.now() + period, period, self._tick)
-        self._service.ready()
-        while not self._ending.wait(max(min(ticks.due, self.pilot_tick()) - self.clock.now(), 0.0)):
-            ticks.run_if_due(self.clock.now())
-
-    def _tick(self) -> None:
-        self.control_tick()
-        # A control loop that hangs is ended and started again, disarmed.
-        self._service.feed(self.clock.now())

@@ -1,7 +1,8 @@
 """Detects faults from the age and the content of what the board, the pilot and the server send.
 
 Ages count from the arrival of a message, not from its stamp, because the clock of an emulated board that was
-paused lags. All times are of the steady clock, so that setting the computer's time has no effect.
+paused lags. Of a batch that waited to be read the newest arrived now, and stamps tell how much earlier the
+others did. All times are of the steady clock, so that setting the computer's time has no effect.
 """
 
 from collections.abc import Callable, Collection
@@ -46,6 +47,9 @@ RISE_OVER = 9.5
 """s over which the rise is measured, after any motion downwards has ended."""
 RISE_MIN = 0.1
 """m of rise in that time; in still water it is 0.3 m."""
+IN_STEP_EARLY = 0.07
+"""s by which limits are shorter where messages wait for the next check: a missing attitude is found within
+two checks."""
 _STATUS_STALE = 0.5
 _NEVER = float("-inf")
 _LIMITS = {name: fault.limit - CHECK_PERIOD for name, fault in ROBOT_FAULTS.items()}
@@ -113,6 +117,8 @@ class FaultDetector:
         """s for which the server may be silent now; None where there is none."""
         self.watch_patience = 0.0
         """s for which nobody may watch the armed robot; 0: without an end."""
+        self.early = 0.0
+        """s by which what the board does not send, or repeats, is a fault earlier."""
         self._clock = clock
         self._line = line
         self._pilot = pilot
@@ -125,7 +131,7 @@ class FaultDetector:
         self._depth_stale = stale_after(_LIMITS["depth_stale"], Depth, baud)
         self._imu_stale = stale_after(ROBOT_FAULTS["imu_stale"].limit - ARRIVAL, Imu, baud)
         self._status_stale = stale_after(_STATUS_STALE, Status, baud)
-        self._heard = self._imu = self._upright = _NEVER
+        self._heard = self._heard_before = self._imu = self._upright = _NEVER
         self._status_time = self._depth_time = self._depth_sane = self._shallow = _NEVER
         self._depth = 0.0
         self._pressures, self._rates, self._forces = Repetition(), Repetition(), Repetition()
@@ -136,11 +142,11 @@ class FaultDetector:
 
     def see_messages(self) -> None:
         """Note that messages came from the board."""
-        self._heard = self._clock.now()
+        self._heard_before, self._heard = self._heard, self._clock.now()
 
-    def see_depth(self, depth: Depth) -> None:
-        """Take a depth."""
-        now = self._clock.now()
+    def see_depth(self, depth: Depth, age: float = 0.0) -> None:
+        """Take a depth; `age`: s by which it is older than the newest sample that came with it."""
+        now = self._arrival(age)
         self._depth_time, self._depth = now, depth.depth
         if DEPTH_MIN <= depth.depth <= DEPTH_MAX:
             self._depth_sane = now
@@ -148,9 +154,9 @@ class FaultDetector:
             self._shallow = now
         self._pressures.see(depth.pressure, now)
 
-    def see_imu(self, imu: Imu) -> None:
-        """Take an attitude."""
-        self._imu = self._clock.now()
+    def see_imu(self, imu: Imu, age: float = 0.0) -> None:
+        """Take an attitude; `age` as of a depth."""
+        self._imu = self._arrival(age)
         self._rates.see(imu.rate, self._imu)
         self._forces.see(imu.force, self._imu)
         w, x, y, z = imu.attitude
@@ -265,14 +271,14 @@ class FaultDetector:
     def _conditions(self, mode: Mode) -> dict[str, bool]:
         now, status, patience = self._clock.now(), self.status, self.server_patience
         pilot = now - self._pilot.taken if mode == "manual" else 0.0
-        depth_age, depth_stale = now - self._depth_time, self._depth_stale
+        depth_age, depth_stale = now - self._depth_time, self._depth_stale - self.early
         imu_is_stale = self._imu_is_stale()
         return {
             "pilot_quiet": pilot > _LIMITS["pilot_quiet"],
             "pilot_lost": pilot > _LIMITS["pilot_lost"],
             "server_silent": patience is not None and now - self._server > patience,
             "unwatched": self._is_unwatched(mode),
-            "board_silent": not self._line.connected or now - self._heard > self._silent,
+            "board_silent": not self._line.connected or now - self._heard > self._silent - self.early,
             "depth_stale": depth_age > depth_stale,
             "depth_frozen": depth_age <= depth_stale and self._depth_is_frozen(),
             "depth_range": depth_age <= depth_stale < now - self._depth_sane,
@@ -301,18 +307,18 @@ class FaultDetector:
         return self._age(newest) <= self._depth_stale and newest - self._shallow > _LIMITS["too_deep"]
 
     def _depth_is_frozen(self) -> bool:
-        return self._pressures.last(_LIMITS["depth_frozen"], self._clock.now())
+        return self._pressures.last(_LIMITS["depth_frozen"] - self.early, self._clock.now())
 
     def _imu_is_frozen(self) -> bool:
         # In the loop the board repeats the simulator's last reading, whose silence is another fault.
         if self._hil is not None:
             return False
-        limit, now = _LIMITS["imu_frozen"], self._clock.now()
+        limit, now = _LIMITS["imu_frozen"] - self.early, self._clock.now()
         return self._rates.last(limit, now) or self._forces.last(limit, now)
 
     def _imu_is_stale(self) -> bool:
         """Return True if the IMU alone is silent; a board that sends nothing at all is another fault."""
-        return self._heard - self._imu > self._imu_stale
+        return self._heard - self._imu > self._imu_stale - self.early
 
     def _capsized(self) -> bool:
         """Return True if the last attitude is upside down; a silent board has no known attitude."""
@@ -336,6 +342,11 @@ class FaultDetector:
     @property
     def _faults(self) -> int:
         return self.status.faults if self.status is not None else 0
+
+    def _arrival(self, age: float) -> float:
+        """Return the time, s, at which a sample arrived that is so much older than the newest one."""
+        now = self._clock.now()
+        return min(max(now - age, self._heard_before), now)
 
     def _age(self, time: float) -> float:
         return self._clock.now() - time

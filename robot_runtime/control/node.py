@@ -115,6 +115,11 @@ class ControlNode:
         bus.on_row(BEACON, self._take_beacon)
         bus.on_document(DETECTION, self._take_detection)
 
+    @property
+    def newest_depth(self) -> float | None:
+        """The time at which the newest depth was taken, s; None before the first. The caller ticks."""
+        return self._depths[-1][0] if self._depths else self._depth_taken
+
     def change_mode(self, mode: Mode) -> None:
         """Set the robot's mode. It never blocks, because a STOP takes this way, too."""
         was, self.mode = self.mode, mode

@@ -145,15 +145,15 @@ class LinkDriver:
         if self._stage is SessionStage.ESTABLISHED:
             self._dump("the port went away")
 
-    def poll(self) -> None:
-        """Update the state and send what is due. Raise PortError."""
+    def poll(self, early: float = 0.0) -> None:
+        """Update the state and send what is due, a heartbeat up to `early` (s) before. Raise PortError."""
         if self._session.stage is not self._stage:
             if self._stage is SessionStage.ESTABLISHED:
                 self._dump("the connection was lost")
             self._stage = self._session.stage
         self.report(_describe(self._stage, self._session))
         with self._writing:
-            data = self._session.poll(self._clock.now())
+            data = self._session.poll(self._clock.now(), early)
             if data and self._write is not None:
                 self._write(data)
 

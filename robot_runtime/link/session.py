@@ -140,8 +140,11 @@ class LinkSession:
             ]
         return messages
 
-    def poll(self, now: float) -> bytes:
-        """Return the bytes to send now: a greeting, queued messages, a heartbeat, or none."""
+    def poll(self, now: float, early: float = 0.0) -> bytes:
+        """Return the bytes to send now: a greeting, queued messages, a heartbeat, or none.
+
+        A heartbeat goes up to `early` (s) before it is due.
+        """
         self._measure_goodput(now)
         if self.stage is SessionStage.ESTABLISHED and now - self._last_frame_at > self._silence:
             self.stage = SessionStage.GREETING
@@ -151,7 +154,7 @@ class LinkSession:
             self._greeted_at = now
             return self._send_open(Hello(definitions=DEFINITIONS_HASH, epoch=self._epoch, credit=CREDIT), now)
         data = self._poll_channel(now)
-        if now - self._sent >= _HEARTBEAT and now >= self._channel.free_at:
+        if now - self._sent >= _HEARTBEAT - early and now >= self._channel.free_at:
             self._channel.offer(encode(Heartbeat(time=int(now * 1000) & 0xFFFFFFFF)), now)
             data += self._poll_channel(now)
         return data

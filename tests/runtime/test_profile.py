@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from robot_runtime.config import Config, RobotConfig, VisionConfig
-from robot_runtime.profile import Profile, choose_profile, fit
+from robot_runtime.config import Config, LinkConfig, RobotConfig, VisionConfig
+from robot_runtime.profile import Profile, choose_profile, fit, in_step
 
 ZERO_W = (1, 447_000_000)
 ZERO_2_W = (4, 447_000_000)
@@ -40,3 +40,17 @@ def test_the_lean_one_has_fewer_and_smaller_pictures() -> None:
 def test_the_lean_one_enlarges_nothing() -> None:
     vision = VisionConfig(width=100, height=80, rate=0.5, stream_width=200, stream_rate=2.0)
     assert fit(Config(vision=vision), "lean").vision == vision
+
+
+@pytest.mark.parametrize(
+    ("config", "expected"),
+    [
+        (Config(robot=RobotConfig(profile="lean")), True),
+        (Config(robot=RobotConfig(profile="full")), False),
+        (Config(robot=RobotConfig(profile="lean", mode="hil")), False),
+        (Config(robot=RobotConfig(profile="lean"), link=LinkConfig(baud=1200)), False),
+    ],
+    ids=["lean", "full", "in the loop", "slow line"],
+)
+def test_only_the_lean_one_hears_the_board_in_step_with_control(config: Config, expected: bool) -> None:
+    assert in_step(config) is expected

@@ -8,10 +8,13 @@ from robot_runtime.commands import Commands
 from robot_runtime.contract.documents import Event, Mode
 from robot_runtime.contract.packets import Navigation
 from robot_runtime.contract.topics import EVENT, NAVIGATION
+from robot_runtime.control_step import ControlStep
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
 from robot_runtime.experiments.scenario.run import PRELUDE, _RunLoop
+from robot_runtime.link.serial_link import HEARTBEAT_EARLY
+from robot_runtime.periodic_task import SAME_TIME
 from robot_runtime.simulation.water.requests import changes
 from tests.runtime.experiments.scenario.staging import Told, document
 
@@ -21,10 +24,42 @@ PUSH_EVERY = 0.05
 """s between two inputs of the pilot's."""
 
 
-class Flight:
-    """A flight that begins when all is well; `sticks`, if any, are sent every 0.05 s."""
+class _StepLoop(_RunLoop):
+    """The loop of a robot that hears its board in step with control."""
 
-    def __init__(self, board: str | MakeBoard = "host", more: str = "") -> None:
+    def __init__(self, rig: ScenarioRig) -> None:
+        super().__init__(rig, Told(), lambda: False)
+        self._step = ControlStep(rig.robot, self._receive)
+        self._tasks.clear()
+
+    def _poll_link(self, now: float) -> None:
+        robot = self._rig.robot
+        if now >= self._step.due - SAME_TIME:
+            robot.missions.see_pages(1)
+            self._step.run()
+            robot.link.poll(HEARTBEAT_EARLY)
+        if robot.link.gathering:
+            self._next_poll = self._step.due
+        else:
+            super()._poll_link(now)
+            self._next_poll = min(self._next_poll, self._step.due)
+
+    def _receive(self, wait: float) -> bool:
+        if not self._rig.robot.link.gathering:
+            return False
+        if wait > 0:
+            self._received += self._rig.run(1)
+        self._receive_bytes()
+        return True
+
+
+class Flight:
+    """A flight that begins when all is well; `sticks`, if any, are sent every 0.05 s.
+
+    `in_step` the robot hears its board once a control tick, as in the lean profile.
+    """
+
+    def __init__(self, board: str | MakeBoard = "host", more: str = "", *, in_step: bool = False) -> None:
         make = boards()[board] if isinstance(board, str) else board
         self.stage = ScenarioRig(read_scenario(document(3600, more=more)), make, lambda _: None, PRELUDE)
         self.robot, self.clock = self.stage.robot, self.stage.clock
@@ -36,7 +71,7 @@ class Flight:
         self._sequence = 0
         self._commands = Commands(self.robot).do
         self._water = changes(self.stage.simulator)
-        self._performance = _RunLoop(self.stage, Told(), lambda: False)
+        self._performance = _StepLoop(self.stage) if in_step else _RunLoop(self.stage, Told(), lambda: False)
         self.robot.bus.on_document(EVENT, self._hear)
         self.robot.bus.on_row(
             NAVIGATION, lambda time, record: self.sent.append((time, Navigation.from_bytes(record)))

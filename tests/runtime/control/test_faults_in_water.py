@@ -46,6 +46,12 @@ def test_a_fault_is_detected_in_time_and_stops_the_robot(flight: Flight, name: s
     check_all_stop(flight, name, break_)
 
 
+@pytest.mark.parametrize(("name", "break_"), ROWS, ids=[name for name, _ in ROWS])
+def test_a_fault_is_detected_in_time_in_step_with_control(name: str, break_: Break) -> None:
+    with Flight(in_step=True) as flight:
+        check_all_stop(flight, name, break_)
+
+
 @pytest.mark.parametrize(("name", "break_"), ROWS[1:5:2], ids=[name for name, _ in ROWS[1:5:2]])
 def test_faults_stop_the_robot_on_the_emulated_board_too(name: str, break_: Break) -> None:
     with Flight("emulated") as flight:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.clock import SteadyClock
-from robot_runtime.contract.packets import Debug, Heartbeat, Hello, Stop
+from robot_runtime.contract.packets import Debug, Depth, Heartbeat, Hello, Parameter, Stop
 from robot_runtime.link.framing import build
 from robot_runtime.link.link_driver import PortError
 from robot_runtime.link.port import Port, list_ports
@@ -42,12 +42,15 @@ class PatientClock:
 class LinkedHost:
     """A serial link and its reports."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, in_step: bool = False) -> None:
         self.texts: list[str] = []
+        self.threads: set[threading.Thread] = set()
         self.messages: list[BoardMessage] = []
         self.mistakes = 0
         self._changed = threading.Condition()
-        self.connection = SerialLink(str(path), 250_000, PatientClock(), 1, self._take, self._change)
+        self.connection = SerialLink(
+            str(path), 250_000, PatientClock(), 1, self._take, self._change, in_step=in_step
+        )
 
     def wait(self, condition: Callable[[], bool]) -> None:
         with self._changed:
@@ -61,6 +64,7 @@ class LinkedHost:
         if self.mistakes:
             self.mistakes -= 1
             raise ZeroDivisionError
+        self.threads.add(threading.current_thread())
         self.messages += messages
         self._wake()
 
@@ -260,3 +264,79 @@ def test_a_line_that_stays_full_is_named(line: tuple[str, int]) -> None:
     path, _ = line
     with Port(path, 115_200) as port, pytest.raises(PortError, match="no more bytes: it stayed full"):
         port.write(bytes(1_000_000))
+
+
+@pytest.fixture
+def stepped(path: Path) -> Iterator[LinkedHost]:
+    host = LinkedHost(path, in_step=True)
+    host.connection.start()
+    yield host
+    host.connection.close()
+
+
+def say_in_step(board: BoardEnd, host: LinkedHost, depth: float) -> None:
+    """Send a depth as the board, and run steps until it is there."""
+    board.say(Depth(time=1, depth=depth, pressure=100_000, temperature=20.0))
+    end, count = time.monotonic() + SECONDS, len(host.messages)
+    while len(host.messages) == count:
+        assert time.monotonic() < end, host.connection.text
+        host.connection.receive_waiting(0.02)
+        host.connection.send_due()
+
+
+def test_in_step_the_bytes_are_handled_by_the_steps_thread(stepped: LinkedHost, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, stepped)
+    say_in_step(board, stepped, 0.1)
+    stepped.threads.clear()
+    for depth in (0.2, 0.3, 0.4):
+        say_in_step(board, stepped, depth)
+    assert stepped.threads == {threading.current_thread()}
+
+
+def test_without_steps_the_links_thread_reads(stepped: LinkedHost, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, stepped)
+    say_in_step(board, stepped, 0.1)
+    board.say(Debug(time=5, level=1, text="alone"))
+    stepped.wait(lambda: any(message.payload.endswith(b"alone") for message in stepped.messages))
+    board.hear(Heartbeat.type)
+
+
+def test_what_is_reliable_is_acknowledged_without_a_step(stepped: LinkedHost, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, stepped)
+    say_in_step(board, stepped, 0.1)
+    assert stepped.connection.send(Parameter(number=0, value=1.0))
+    board.hear(Parameter.type)
+    board.say(Parameter(number=0, value=1.0))
+    board.hear_until(lambda: not board.waiting)
+    stepped.wait(lambda: any(message.type == Parameter.type for message in stepped.messages))
+
+
+def test_an_error_in_a_step_ends_the_session_and_the_link_comes_back(
+    stepped: LinkedHost, path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    board = BoardEnd(path)
+    connect(board, stepped)
+    say_in_step(board, stepped, 0.1)
+    stepped.mistakes = 1
+    board.say(Depth(time=1, depth=0.2, pressure=100_000, temperature=20.0))
+    end = time.monotonic() + SECONDS
+    while stepped.mistakes and time.monotonic() < end:
+        stepped.connection.receive_waiting(0.02)
+    stepped.wait(lambda: any("an error in the software" in text for text in stepped.texts))
+    assert "ZeroDivisionError" in caplog.text
+    connect(board, stepped)
+
+
+def test_a_port_that_vanishes_is_noticed_in_a_step(stepped: LinkedHost, path: Path) -> None:
+    board = BoardEnd(path)
+    connect(board, stepped)
+    say_in_step(board, stepped, 0.1)
+    board.vanish()
+    end = time.monotonic() + SECONDS
+    while stepped.connection.connected and time.monotonic() < end:
+        stepped.connection.receive_waiting(0.02)
+    stepped.wait(lambda: not stepped.connection.connected)
+    connect(BoardEnd(path), stepped)
