@@ -80,6 +80,7 @@ GOALS = {
     # the line to the viewer, each of which costs mostly its waking up. Fewer of them make the controllers
     # swing wider, and by an estimate would miss `latency.sample_to_page_ms_p95`.
     "cpu.robot_stack_percent": _most(2.5, "python"),
+    "cpu.robot_stack_lean_percent": _most(1.5, "python"),
     "decoder.alarm_s.hang": _most(1.5),
     "decoder.armed_at_the_end": _least(1),
     "decoder.named_s.crash": _most(1),

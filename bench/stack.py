@@ -17,11 +17,23 @@ _JITTER_SECONDS = 100.0
 
 
 def measure() -> dict[str, float]:
-    """Measure as on a robot: CPU in percent of one core over half a minute, and at its end MB of memory,
-    resident and anonymous. With the emulated board: ms by which the time between two control ticks differs
-    from their period, idle and while exporting and rendering.
+    """Measure as on a robot: CPU in percent of one core over half a minute, in the lean profile as well, and
+    at its end MB of memory, resident and anonymous. With the emulated board: ms by which the time between two
+    control ticks differs from their period, idle and while exporting and rendering.
     """
-    return _load() | _jitter()
+    return _load() | _load_lean() | _jitter()
+
+
+def _load_lean() -> dict[str, float]:
+    with tempfile.TemporaryDirectory() as folder, RealRobot(Path(folder), profile="lean") as robot:
+        viewer = LiveViewer(robot)
+        robot.api.post("/sessions", json={"name": "bench"}).raise_for_status()
+        robot.arm()
+        time.sleep(_SETTLE)
+        cpu = core_percent(pids(robot.robot_processes), _SECONDS)
+        viewer.close()
+        robot.api.post("/robot/stop").raise_for_status()
+    return {"cpu.robot_stack_lean_percent": sum(cpu.values())}
 
 
 def _load() -> dict[str, float]:

@@ -142,6 +142,8 @@ class RuntimeListener:
     def __init__(self, messages: ZenohTransport) -> None:
         self.documents: list[tuple[str, dict[str, Any]]] = []
         self.rows: list[tuple[str, float, Any]] = []
+        self.messages: list[tuple[float, list[tuple[str, int, int]]]] = []
+        """Arrival of each, s, and its blocks: topic, first number, samples."""
         self._changed = threading.Condition()
         self._subscription = messages.subscribe(STREAM, self._take)
 
@@ -158,7 +160,10 @@ class RuntimeListener:
 
     def _take(self, _: str, data: bytes) -> None:
         with self._changed:
-            for block in read_blocks(data):
+            blocks = read_blocks(data)
+            numbers = [(block.topic.name, block.first, block.count) for block in blocks]
+            self.messages.append((time.monotonic(), numbers))
+            for block in blocks:
                 name = block.topic.name
                 if block.topic.kind is Kind.DOCUMENTS:
                     self.documents += [(name, document) for document in json.loads(block.payload)]
@@ -258,6 +263,26 @@ def _level(noise: float) -> Imu:
 
 def _micros() -> int:
     return time.monotonic_ns() // 1000 & 0xFFFFFFFF
+
+
+def test_in_the_lean_profile_every_sample_comes_with_a_tick_and_a_command(tmp_path: Path) -> None:
+    config = tmp_path / "lean.toml"
+    config.write_text((ROOT / "robot.toml").read_text().replace('profile = "auto"', 'profile = "lean"'))
+    rig = RuntimeRig(tmp_path, "--config", str(config))
+    with closing(rig):
+        rig.ready()
+        rig.ask("arm", mode="automatic")
+        rig.listener.wait(lambda: rig.board.count(Navigation.type) > 5)
+        began = len(rig.listener.messages)
+        rig.listener.wait(lambda: len(rig.listener.messages) >= began + 20)
+        times = [time_ for time_, _ in rig.listener.messages[began:]]
+        assert (times[-1] - times[0]) / (len(times) - 1) > 0.08
+        depths = [blocks for _, blocks in rig.listener.messages[began:]]
+        numbers = [(first, count) for blocks in depths for name, first, count in blocks if name == "depth"]
+        assert all(first + count == after for (first, count), (after, _) in pairwise(numbers))
+        assert len(numbers) >= 18
+        navigations = [name for blocks in depths for name, *_ in blocks if name == "navigation"]
+        assert len(navigations) >= 18
 
 
 def test_arms_controls_at_its_rate_and_stops(rig: RuntimeRig) -> None:
