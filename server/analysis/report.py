@@ -3,10 +3,9 @@
 Dark on white, for printing. The file includes Plotly, about 5 MB.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from html import escape
-from itertools import chain
 
 import plotly.graph_objects as go
 from plotly.io import to_html
@@ -17,6 +16,7 @@ from server import VERSION
 from server.analysis.schemas import Compared, Comparison, SignalLine, TimeRange
 from server.analysis.signals import Signal
 from server.metrics.figure import FigureMeaning
+from server.platform.report_page import report_page, report_table
 
 COLOURS = ("#0072b2", "#c25200", "#a3427d", "#00795a", "#7d6a00", "#5b3fa0", "#4a5a66")
 """After Okabe and Ito, darkened for white paper."""
@@ -55,7 +55,7 @@ def write_report(comparison: Comparison, view: TimeRange | None = None) -> str:
         _difference_table(comparison),
         _bookmark_table(comparison),
     ]
-    return PAGE.format(title=escape(f"µ-CAT: {names}"), body="\n".join(parts))
+    return report_page(f"µ-CAT: {names}", parts)
 
 
 def _moment(comparison: Comparison) -> str:
@@ -219,7 +219,7 @@ def _session_table(comparison: Comparison) -> str:
         )
         for number, session in enumerate(comparison.sessions)
     )
-    return _table(("Session", "Started", "Duration", "State", ""), rows)
+    return report_table(("Session", "Started", "Duration", "State", ""), rows)
 
 
 def _figure_table(comparison: Comparison) -> str:
@@ -236,7 +236,7 @@ def _figure_table(comparison: Comparison) -> str:
         )
         for meaning in comparison.figures
     )
-    return _table(head, rows)
+    return report_table(head, rows)
 
 
 def _covered(session: Compared) -> str:
@@ -262,7 +262,7 @@ def _difference_table(comparison: Comparison) -> str:
         )
         for difference in comparison.differences
     )
-    return _table(("", *(escape(session.name) for session in comparison.sessions)), rows)
+    return report_table(("", *(escape(session.name) for session in comparison.sessions)), rows)
 
 
 def _bookmark_table(comparison: Comparison) -> str:
@@ -271,44 +271,8 @@ def _bookmark_table(comparison: Comparison) -> str:
         for session in comparison.sessions
         for bookmark in session.markers
     ]
-    return "<h2>Bookmarks</h2>" + _table(("Time", "Session", "Bookmark"), rows) if rows else ""
-
-
-def _table(head: Sequence[str], rows: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:
-    lines = chain(
-        ["<table><thead><tr>", *(f"<th>{cell}</th>" for cell in head), "</tr></thead><tbody>"],
-        (f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows),
-        ["</tbody></table>"],
-    )
-    return "".join(lines)
+    return "<h2>Bookmarks</h2>" + report_table(("Time", "Session", "Bookmark"), rows) if rows else ""
 
 
 def _utc(moment: datetime) -> str:
     return f"{moment:%Y-%m-%d %H:%M:%S} UTC"
-
-
-PAGE = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
-<style>
-body {{ max-width: 1200px; margin: 0 auto; padding: 24px 16px; background: #fff; color: #0d1a22;
-  font: 14px/1.45 Inter, Helvetica, Arial, sans-serif; font-variant-numeric: tabular-nums; }}
-h1 {{ margin: 0 0 4px; font-size: 22px; }}
-h2 {{ margin: 28px 0 6px; font-size: 16px; }}
-table {{ width: 100%; border-collapse: collapse; }}
-th, td {{ padding: 5px 10px 5px 0; border-bottom: 1px solid #d9e0e5; text-align: left; vertical-align: top; }}
-th {{ color: #3f515c; font-size: 12px; font-weight: 500; }}
-small {{ display: block; color: #3f515c; font-size: 11px; }}
-.stroke {{ display: inline-block; width: 14px; height: 4px; margin-right: 8px; border-radius: 2px;
-  vertical-align: middle; print-color-adjust: exact; -webkit-print-color-adjust: exact; }}
-tr {{ break-inside: avoid; }}
-</style>
-</head>
-<body>
-{body}
-</body>
-</html>
-"""

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from server.analysis.decimation import usual_pause
+from server.analysis.story_schemas import SpectrumPeak
 from server.metrics.series import Floats, Series
 
 SAMPLES_LEAST = 32
@@ -32,18 +33,6 @@ class NoSpectrumError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Peak:
-    """The highest place of a spectrum, as the sine that would make it.
-
-    `frequency` in Hz, `amplitude` in the signal's unit, `share` of the variance.
-    """
-
-    frequency: float
-    amplitude: float
-    share: float
-
-
-@dataclass(frozen=True, slots=True)
 class Density:
     """A power spectral density: `frequency` in Hz, `density` in the signal's unit² per Hz, shape (n,) each.
 
@@ -54,7 +43,7 @@ class Density:
     density: Floats
     rate: float
     segments: int
-    peak: Peak | None
+    peak: SpectrumPeak | None
 
 
 def find_spectrum(series: Series, *, angle: bool = False) -> Density:
@@ -127,7 +116,7 @@ def _even_runs(series: Series, angle: bool) -> tuple[list[Floats], float]:
     return runs, 1 / period
 
 
-def _find_peak(frequency: Floats, density: Floats) -> Peak | None:
+def _find_peak(frequency: Floats, density: Floats) -> SpectrumPeak | None:
     power = density * (frequency[1] - frequency[0])
     variance = float(power.sum())
     # Of a constant only the rounding is left.
@@ -137,4 +126,4 @@ def _find_peak(frequency: Floats, density: Floats) -> Peak | None:
     low, high = max(at - LOBE, 0), at + LOBE + 1
     inside = float(power[low:high].sum())
     centre = float((frequency[low:high] * power[low:high]).sum()) / inside
-    return Peak(centre, float(np.sqrt(2 * inside)), inside / variance)
+    return SpectrumPeak(frequency=centre, amplitude=float(np.sqrt(2 * inside)), share=inside / variance)

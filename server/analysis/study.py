@@ -1,14 +1,13 @@
 """The study of one session: spectra of its signals, and one signal against another."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 
 import numpy as np
 
 from server.analysis.session_reader import SessionReader
 from server.analysis.signals import Signal, list_signals, split
 from server.analysis.spectrum import SEGMENT_MOST, NoSpectrumError, find_spectrum, pair
-from server.analysis.story_schemas import SignalPair, Spectrum, SpectrumPeak, StudyQuery
+from server.analysis.story_schemas import SignalPair, Spectrum, StudyQuery
 from server.library.content import Recording, reading_content
 from server.metrics.series import Floats, Series
 from server.platform.errors import NotFoundError
@@ -75,7 +74,7 @@ def _describe_spectrum(signal: Signal, series: Series) -> Spectrum:
         density=_numbers(density.density),
         rate=density.rate,
         segments=density.segments,
-        peak=SpectrumPeak.model_validate(asdict(density.peak)) if density.peak is not None else None,
+        peak=density.peak,
         problem="",
     )
 

@@ -10,36 +10,10 @@ from robot_runtime.experiments.bring_up.guide import STEPS
 from robot_runtime.experiments.bring_up.procedure import BringUp
 from robot_runtime.experiments.bring_up.results import Result, Verdict
 from server import VERSION
+from server.platform.report_page import report_page, report_table
 
 STATES = {"open": "not done", "done": "done", "wrong": "something is wrong", "skipped": "skipped"}
 MARKS = {"good": "✓", "note": "•", "wrong": "✗"}
-
-PAGE = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width">
-<title>{title}</title>
-<style>
-body {{ max-width: 52rem; margin: 2rem auto; padding: 0 1rem; font: 16px/1.5 Inter, Helvetica, sans-serif;
-  color: #1c262c; background: #fff; }}
-h1 {{ font-size: 1.6rem; }}
-h2 {{ margin: 1.6rem 0 .3rem; font-size: 1.1rem; }}
-h2 small {{ font-weight: 400; color: #55636b; }}
-table {{ width: 100%; border-collapse: collapse; }}
-th, td {{ padding: .3rem .6rem .3rem 0; border-top: 1px solid #d6dde1; text-align: left; }}
-td {{ vertical-align: top; }}
-th {{ font-weight: 600; }}
-.wrong {{ color: #a32020; }}
-.note {{ color: #7a5a00; }}
-.good {{ color: #1d6b45; }}
-</style>
-</head>
-<body>
-{body}
-</body>
-</html>
-"""
 
 
 def write_report(robot: str, when: datetime, procedure: BringUp) -> str:
@@ -60,7 +34,7 @@ def write_report(robot: str, when: datetime, procedure: BringUp) -> str:
             for step in STEPS
         ),
     ]
-    return PAGE.format(title=escape(f"Bring-up of {robot}"), body="\n".join(parts))
+    return report_page(f"Bring-up of {robot}", parts)
 
 
 def _sentence(text: str, things: list[str], kind: Verdict = "wrong") -> str:
@@ -86,20 +60,20 @@ def _calibration(procedure: BringUp) -> str:
         ("factor of the battery's voltage", f"{values.battery_factor:.4f}"),
         ("beacon detectors", "low in the light" if values.beacons_inverted else "high in the light"),
     ]
-    return (
-        "<table>"
-        + "".join(f"<tr><th>{escape(a)}</th><td>{escape(b)}</td></tr>" for a, b in rows)
-        + "</table>"
-    )
+    return report_table(("part", "value"), [tuple(map(escape, row)) for row in rows])
 
 
 def _step(title: str, state: str, results: list[Result]) -> str:
     head = f"<h2>{escape(title)} <small>{state}</small></h2>"
     if not results:
         return head
-    rows = "".join(
-        f'<tr><td class="{result.verdict}">{MARKS[result.verdict]}</td><td>{escape(result.what)}</td>'
-        f"<td>{escape(result.expected)}</td><td>{escape(result.measured)}<br>{escape(result.advice)}</td></tr>"
+    rows = [
+        (
+            f'<span class="{result.verdict}">{MARKS[result.verdict]}</span>',
+            escape(result.what),
+            escape(result.expected),
+            f"{escape(result.measured)}<br>{escape(result.advice)}",
+        )
         for result in results
-    )
-    return f"{head}<table><tr><th></th><th>part</th><th>expected</th><th>measured</th></tr>{rows}</table>"
+    ]
+    return head + report_table(("", "part", "expected", "measured"), rows)

@@ -1,14 +1,14 @@
 """The result of a fit as one HTML file: its numbers, and a chart of measured over predicted (Plotly)."""
 
-from collections.abc import Sequence
 from html import escape
 
 import plotly.graph_objects as go
 from plotly.io import to_html
 
 from server import VERSION
-from server.analysis.report import COLOURS, GAP, PAGE, draw_rows
+from server.analysis.report import COLOURS, GAP, draw_rows
 from server.features.identification.schemas import CheckedSession, IdentificationResult, describe_improvement
+from server.platform.report_page import report_page, report_table
 
 HIGH = 170
 LINES = (("measured", "#0d1a22", "solid"), ("before", COLOURS[1], "dot"), ("after", COLOURS[0], "solid"))
@@ -20,14 +20,14 @@ def write_identification_report(result: IdentificationResult) -> str:
     parts = [
         f"<h1>Craft fitted to {escape(names)}</h1>",
         f"<p>µ-CAT {VERSION}. A ± is one standard deviation.</p>",
-        _table(
+        report_table(
             ("Number", "Before", "Found", "Confidence"),
             [
                 (
-                    f"{number.title}, {number.unit}" if number.unit else number.title,
+                    escape(f"{number.title}, {number.unit}" if number.unit else number.title),
                     f"{number.before:.4g}",
                     f"{number.value:.4g}" if number.deviation is not None else "as before",
-                    number.words,
+                    escape(number.words),
                 )
                 for number in result.numbers
             ],
@@ -38,7 +38,7 @@ def write_identification_report(result: IdentificationResult) -> str:
         "<h2>Craft file</h2>",
         f"<pre>{escape(result.craft)}</pre>",
     ]
-    return PAGE.format(title=escape(f"µ-CAT: craft of {names}"), body="\n".join(parts))
+    return report_page(f"µ-CAT: craft of {names}", parts)
 
 
 def _missing(missing: list[str]) -> str:
@@ -52,14 +52,20 @@ def _check(check: CheckedSession | None) -> str:
     if check is None:
         return "<p>No session was left out, so nothing checks the result.</p>"
     rows = [
-        (channel.name, f"{channel.before_rms:.3g} {channel.unit}", f"{channel.after_rms:.3g} {channel.unit}")
+        (
+            escape(channel.name),
+            f"{channel.before_rms:.3g} {escape(channel.unit)}",
+            f"{channel.after_rms:.3g} {escape(channel.unit)}",
+        )
         for channel in check.channels
     ]
     text = (
         f"{check.name} is predicted {describe_improvement(check.improvement)} than before: the error is "
         f"{100 * check.after_error:.1f} % of what the signals vary, before {100 * check.before_error:.0f} %."
     )
-    return f"<p>{escape(text)}</p>{_table(('Signal', 'Error before', 'Error after'), rows)}{_chart(check)}"
+    return (
+        f"<p>{escape(text)}</p>{report_table(('Signal', 'Error before', 'Error after'), rows)}{_chart(check)}"
+    )
 
 
 def _chart(check: CheckedSession) -> str:
@@ -87,14 +93,3 @@ def _chart(check: CheckedSession) -> str:
     )
     figure.update_xaxes(title="s", row=len(heights))
     return str(to_html(figure, include_plotlyjs=True, full_html=False, config={"displaylogo": False}))
-
-
-def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    lines = [
-        "<table><thead><tr>",
-        *(f"<th>{escape(cell)}</th>" for cell in head),
-        "</tr></thead><tbody>",
-        *(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows),
-        "</tbody></table>",
-    ]
-    return "".join(lines)
