@@ -126,18 +126,6 @@ def test_escape_stops_from_anywhere(page: Page) -> None:
     expect(page.get_by_text("Disarmed", exact=True)).to_be_visible()
 
 
-def test_both_sizes_show_the_essential_elements(any_page: Page) -> None:
-    stop = any_page.get_by_role("button", name="STOP")
-    expect(stop).to_be_in_viewport(ratio=1)
-    box = stop.bounding_box()
-    assert box is not None
-    assert min(box["width"], box["height"]) >= 44
-    value = any_page.locator(".reading", has_text="Depth").locator(".value")
-    expect(value).to_have_text(re.compile(r"\d\.\d\d"))
-    wider = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
-    assert any_page.evaluate(wider) == 0
-
-
 def test_a_lost_board_is_reported_and_recovers(page: Page, stack: Stack) -> None:
     expect(page.get_by_role("button", name="Hold to arm")).to_be_visible()
     board = stack.child("build/board")

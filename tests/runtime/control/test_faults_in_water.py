@@ -52,12 +52,6 @@ def test_a_fault_is_detected_in_time_in_step_with_control(name: str, break_: Bre
         check_all_stop(flight, name, break_)
 
 
-@pytest.mark.parametrize(("name", "break_"), ROWS[1:5:2], ids=[name for name, _ in ROWS[1:5:2]])
-def test_faults_stop_the_robot_on_the_emulated_board_too(name: str, break_: Break) -> None:
-    with Flight("emulated") as flight:
-        check_all_stop(flight, name, break_)
-
-
 def check_all_stop(flight: Flight, name: str, break_: Break) -> None:
     """The armed robot is stopped in time after the fault, and demands an acknowledgement."""
     flight.arm()
