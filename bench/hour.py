@@ -9,10 +9,12 @@ import fcntl
 import os
 import shutil
 import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from bench.dive import Dive
 from robot_runtime.clock import SimulatedClock
+from robot_runtime.transport.blocks import Block
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
@@ -61,29 +63,43 @@ def _record_shared(shared: Path) -> None:
             shutil.copytree(growing, shared / f"{seed}")
 
 
-def record_hour(data: Path, seconds: float = SECONDS, seed: int = 1, name: str = "an hour") -> int:
+def record_hour(
+    data: Path,
+    seconds: float = SECONDS,
+    seed: int = 1,
+    name: str = "an hour",
+    more: Callable[[float], Iterable[Block]] = lambda _: (),
+) -> int:
     """Record `seconds` of a dive into a data folder that no server uses. Return the session's number.
 
-    Chunks are as long as in real time. The same seed gives the same samples.
+    Chunks are as long as in real time. The same seed gives the same samples. `more` gives further blocks that
+    are due by a time (s since the start).
     """
     settings = Settings(data=DataFolder(data.absolute()), config=CONFIG)
     make_folders(settings.data)
     prepare(settings.data)
     store = Store(settings.data.database)
     try:
-        return asyncio.run(_record(store, settings, seconds, seed, name))
+        return asyncio.run(_record(store, settings, seconds, seed, name, more))
     finally:
         store.close()
 
 
-async def _record(store: Store, settings: Settings, seconds: float, seed: int, name: str) -> int:
+async def _record(
+    store: Store,
+    settings: Settings,
+    seconds: float,
+    seed: int,
+    name: str,
+    more: Callable[[float], Iterable[Block]],
+) -> int:
     clock = SimulatedClock(STARTED_STEADY)
     recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
     dive = Dive(STARTED_STEADY, seconds, seed)
     session = await recorder.start(new_row(settings, clock, name, "made for measurements", "{}"))
     while clock.now() < STARTED_STEADY + seconds:
         clock.forward(min(PERIOD, STARTED_STEADY + seconds - clock.now()))
-        for block in dive.until(clock.now()):
+        for block in (*dive.until(clock.now()), *more(clock.now() - STARTED_STEADY)):
             recorder.add(block)
         await recorder.flush()
     await recorder.stop(session.id)

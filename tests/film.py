@@ -28,6 +28,21 @@ def read_number(picture: Picture) -> int:
     return sum(int(picture[top, left].mean() > 128) << bit for bit, (top, left) in enumerate(middles))
 
 
+READ_NUMBER = f"""(video) => {{
+    const canvas = new OffscreenCanvas({WIDTH}, {HEIGHT});
+    const context = canvas.getContext('2d');
+    context.drawImage(video, 0, 0, {WIDTH}, {HEIGHT});
+    let number = 0;
+    for (let bit = 0; bit < {BITS}; bit += 1) {{
+        const top = Math.floor(bit / 6) * 2 * {CELL} + {CELL // 2};
+        const left = bit % 6 * {CELL} + {CELL} + {CELL // 2};
+        if (context.getImageData(left, top, 1, 1).data[1] > 128) number += 2 ** bit;
+    }}
+    return number;
+}}"""
+"""JavaScript that returns the number that a video shows."""
+
+
 def code_numbers(coder: FilmCoder, numbers: range, start: float) -> list[tuple[float, bytes]]:
     """Return the times (s) and the coded pictures of these numbers, the first one at `start`."""
     times = [start + (number - numbers[0]) / RATE for number in numbers]

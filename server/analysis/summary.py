@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from robot_runtime.contract.topics import DETECTION, MISSION, STATE, THUMBNAIL
+from robot_runtime.contract.topics import DETECTION, FILM, MISSION, STATE, THUMBNAIL
 from server.analysis.figures import MEASURED
 from server.analysis.segments import find_segments
 from server.analysis.session_reader import SessionReader
@@ -122,8 +122,11 @@ def _curve(depth: Series, duration: float) -> list[float | None]:
 
 
 def _face(recording: Recording, moment: float) -> float | None:
-    """Return `moment` (s since the start), or the nearest one from which on there is a picture."""
-    spans = recording.spans(THUMBNAIL.name) if THUMBNAIL.name in recording.topics else []
+    """Return `moment` (s since the start), or the nearest one from which on there is a picture.
+
+    Where there are no small ones, it is of the film.
+    """
+    spans = recording.spans(THUMBNAIL.name) or recording.spans(FILM.name)
     if not spans:
         return None
     start = recording.row.started_steady

@@ -15,7 +15,7 @@ from typing import IO, TYPE_CHECKING, Any
 from pydantic import Field
 
 from robot_runtime.contract.film_picture import FilmPicture
-from robot_runtime.contract.topics import FILM
+from robot_runtime.contract.topics import FILM, THUMBNAIL
 from server.library.content import Recording
 from server.platform.errors import NotFoundError, UnavailableError
 from server.platform.schema_base import Schema
@@ -41,6 +41,8 @@ _TEXT_BYTES = Struct(">H")
 """The length before the text of a subtitle (3GPP TS 26.245, 5.17)."""
 _CRF = 23
 """x264's rate factor for pictures that were JPEG files."""
+THUMBNAIL_WIDTH = 160
+"""px"""
 _MICROSECONDS = 1_000_000
 _FRAGMENTED = {
     "movflags": "frag_keyframe+empty_moov+default_base_moof",
@@ -226,6 +228,30 @@ def film_part(recording: Recording, start: float, seconds: float) -> tuple[float
     output = BytesIO()
     write_mp4(chain([(origin, first)], pictures), output)
     return origin, output.getvalue()
+
+
+def small_picture(recording: Recording, time: float) -> bytes | None:
+    """Return the first thumbnail from `time` (s, steady clock) on, a JPEG file; None without one.
+
+    Of a session that has none it is made of the film: of the key picture before, or else of the next one.
+    Raise NoFilmError, CodecMissingError, StoreError, RecordingError, ValueError where it is damaged.
+    """
+    for _, jpeg in recording.pictures(THUMBNAIL.name, time):
+        return jpeg
+    if recording.has(THUMBNAIL.name) or not recording.has(FILM.name):
+        return None
+    _, picture = next(film_from(recording, time, inf))
+    frame = _decode(picture)
+    import av
+
+    width = THUMBNAIL_WIDTH
+    height = max(2, round(frame.height * width / frame.width / 2) * 2)
+    coder = av.CodecContext.create("mjpeg", "w")
+    assert isinstance(coder, av.VideoCodecContext)
+    coder.width, coder.height, coder.pix_fmt = width, height, "yuvj420p"
+    coder.time_base = Fraction(1, _MICROSECONDS)
+    small = frame.reformat(width, height, "yuvj420p")
+    return b"".join(bytes(packet) for packet in [*coder.encode(small), *coder.encode(None)])
 
 
 def _read(recording: Recording, start: float, end: float) -> Iterator[Picture]:

@@ -19,7 +19,7 @@ from sqlmodel import col, func, select
 from robot_runtime.clock import Clock
 from server.library.config import SessionsConfig
 from server.library.film_removal import FilmRemoval
-from server.library.storage import GIGABYTE, measure
+from server.library.storage import free_for_recordings
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
 from server.platform.notices import Notices
 from server.platform.schema import INCREMENTAL
@@ -129,8 +129,7 @@ class RetentionWorker:
             self._notify(rows, f"Older than {days:g} days")
 
     async def _make_room(self, now: float, settled_before: float) -> None:
-        storage = await asyncio.to_thread(measure, self._store, self._settings)
-        needed = int(self._rules.keep_free * GIGABYTE) - storage.free - storage.reusable
+        needed = -await asyncio.to_thread(free_for_recordings, self._store, self._settings)
         if needed <= 0:
             self._out_of_candidates = False
             return

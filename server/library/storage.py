@@ -6,9 +6,10 @@ from pathlib import Path
 from pydantic import Field
 from sqlmodel import col, func, select
 
+from robot_runtime.contract.topics import FILM
 from server.library.config import SessionsConfig
 from server.platform.disk_space import free_bytes
-from server.platform.models import SessionRow
+from server.platform.models import Chunk, SessionRow
 from server.platform.schema_base import Schema
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -28,6 +29,7 @@ class Storage(Schema):
     total: int = Field(description="bytes of this disk")
     sessions: int = Field(description="number of sessions, without the bin")
     sessions_bytes: int
+    film_bytes: int = Field(description="bytes of the films of all sessions, those in the bin included")
     bin: int = Field(description="number of sessions in the bin")
     bin_bytes: int
     removing: int = Field(description="number of sessions that are being removed for good")
@@ -50,6 +52,10 @@ def measure(store: Store, settings: Settings) -> Storage:
         totals = {bool(deleted): (count, total) for deleted, count, total in rows}
         going = select(func.count(), func.coalesce(func.sum(SessionRow.bytes), 0))
         removing, removing_bytes = database.exec(going.where(SessionRow.state == REMOVING)).one()
+        # By session: the index of chunks begins with it.
+        film = (col(Chunk.session_id) == col(SessionRow.id)) & (col(Chunk.topic) == FILM.name)
+        films = select(func.coalesce(func.sum(func.length(Chunk.data)), 0)).select_from(SessionRow)
+        film_bytes = database.exec(films.join(Chunk, film)).one()
     disk = shutil.disk_usage(folder.path)
     sessions, sessions_bytes = totals.get(False, (0, 0))
     in_bin, bin_bytes = totals.get(True, (0, 0))
@@ -62,6 +68,7 @@ def measure(store: Store, settings: Settings) -> Storage:
         total=disk.total,
         sessions=sessions,
         sessions_bytes=sessions_bytes,
+        film_bytes=film_bytes,
         bin=in_bin,
         bin_bytes=bin_bytes,
         removing=removing,
@@ -73,13 +80,16 @@ def measure(store: Store, settings: Settings) -> Storage:
 
 
 def free_for_recordings(store: Store, settings: Settings) -> int:
-    """Return the bytes that recordings may take before older ones make room. Raise StoreError."""
+    """Return the bytes that recordings may take before older ones make room; below 0 these lack already.
+
+    Raise StoreError.
+    """
     with store.read() as database:
         connection = database.connection()
         pages = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
         size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
     reserved = int(settings.section(SessionsConfig).keep_free * GIGABYTE)
-    return max(0, free_bytes(settings.data.path) + int(pages * size) - reserved)
+    return free_bytes(settings.data.path) + int(pages * size) - reserved
 
 
 def _bytes(path: Path) -> int:

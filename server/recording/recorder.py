@@ -2,8 +2,8 @@
 
 Samples are gathered in memory, encoded in the writer's thread and committed every `PERIOD`, so that a power
 cut costs at most the last second. While the database cannot be written, up to `BACKLOG_BYTES` wait; the rest
-is counted as not stored. A jump in a topic's numbering ends a chunk and is stored as a gap. A session of a
-killed server continues if the missed samples are still available (`server.recording.resume`).
+is counted as not stored, the film first. A jump in a topic's numbering ends a chunk and is stored as a gap. A
+session of a killed server continues if the missed samples are still available (`server.recording.resume`).
 """
 
 import asyncio
@@ -21,7 +21,7 @@ from sqlmodel import col, select
 
 from robot_runtime.clock import Clock
 from robot_runtime.contract.chunks import encode
-from robot_runtime.contract.topics import BY_NAME, NOTICE, AnyTopic
+from robot_runtime.contract.topics import BY_NAME, FILM, NOTICE, AnyTopic
 from robot_runtime.transport.blocks import NUMBERS, Block
 from server.platform.errors import ConflictError
 from server.platform.models import Chunk, Gap, SessionRow
@@ -389,17 +389,24 @@ def _as_of(block: Block, now: float) -> Block:
 
 
 def _drop_oldest(batch: _Batch, now: float) -> None:
-    # Spans are not encoded where not even a transaction could begin; they are newer than the chunks.
+    """Drop films, and where that is not enough all else, the oldest first."""
     size = batch.bytes + sum(span.size for span in batch.spans)
-    while size > BACKLOG_BYTES:
-        if batch.chunks:
-            chunk = batch.chunks.pop(0)
-            topic, count, freed = chunk["topic"], chunk["count"], len(chunk["data"])
-        else:
-            span = batch.spans.pop(0)
-            topic, count, freed = span.topic.name, span.count, span.size
-        size -= freed
-        batch.note(topic, "not stored", count, now)
+    for film_alone in (True, False):
+        # Spans are not encoded where not even a transaction could begin; they are newer than the chunks.
+        chunks, batch.chunks = batch.chunks, []
+        for chunk in chunks:
+            if size > BACKLOG_BYTES and (chunk["topic"] == FILM.name or not film_alone):
+                size -= len(chunk["data"])
+                batch.note(chunk["topic"], "not stored", chunk["count"], now)
+            else:
+                batch.chunks.append(chunk)
+        spans, batch.spans = batch.spans, []
+        for span in spans:
+            if size > BACKLOG_BYTES and (span.topic is FILM or not film_alone):
+                size -= span.size
+                batch.note(span.topic.name, "not stored", span.count, now)
+            else:
+                batch.spans.append(span)
 
 
 async def _finish(step: Coroutine[Any, Any, T]) -> T:

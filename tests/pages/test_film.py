@@ -1,6 +1,7 @@
 """The film on a session's page in two browser engines: each picture that is sought is the one of its time."""
 
 import asyncio
+import re
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
@@ -20,7 +21,7 @@ from server.platform.store import Store
 from tests.browser.firefox import Firefox
 from tests.browser.opening import DESKTOP, opened_page, signed_in
 from tests.browser.people import make_link
-from tests.film import BITS, CELL, HEIGHT, RATE, WIDTH, code_numbers
+from tests.film import HEIGHT, RATE, READ_NUMBER, WIDTH, code_numbers
 from tests.pages.dive_site import DiveSite
 from tests.server.analysis.dives import START, STARTED_STEADY, dive, record
 from tests.server.blocks import film_block
@@ -31,19 +32,6 @@ SECONDS = 30
 SOUGHT = 20.3
 """s since the session's start, of which nothing is in store when it is sought."""
 FILM = "document.querySelector('[aria-label=\"Film of the camera\"]')"
-READ = f"""(video) => {{
-    const canvas = new OffscreenCanvas({WIDTH}, {HEIGHT});
-    const context = canvas.getContext('2d');
-    context.drawImage(video, 0, 0, {WIDTH}, {HEIGHT});
-    let number = 0;
-    for (let bit = 0; bit < {BITS}; bit += 1) {{
-        const top = Math.floor(bit / 6) * 2 * {CELL} + {CELL // 2};
-        const left = bit % 6 * {CELL} + {CELL} + {CELL // 2};
-        if (context.getImageData(left, top, 1, 1).data[1] > 128) number += 2 ** bit;
-    }}
-    return number;
-}}"""
-"""JavaScript that returns the number that a video shows, as `tests.film` draws it."""
 
 
 def number_at(time: float) -> int:
@@ -87,9 +75,21 @@ def test_the_film_plays_and_is_sought(page: Page, filmed: DiveSite) -> None:
     expect(film).to_be_visible()
     wait_for(lambda: film.evaluate("(video) => video.readyState >= 2"), "the first picture")
     film.evaluate(f"(video) => {{ video.currentTime = {SOUGHT} }}")
-    wait_for(lambda: film.evaluate(READ) == number_at(SOUGHT), "the picture that was sought")
+    wait_for(lambda: film.evaluate(READ_NUMBER) == number_at(SOUGHT), "the picture that was sought")
     film.evaluate("(video) => video.play()")
-    wait_for(lambda: film.evaluate(READ) > number_at(SOUGHT) + 5, "the film to play")
+    wait_for(lambda: film.evaluate(READ_NUMBER) > number_at(SOUGHT) + 5, "the film to play")
+
+
+def test_a_session_without_small_pictures_has_them_from_its_film(page: Page, filmed: DiveSite) -> None:
+    page.goto(f"{filmed.url}/#/sessions/1")
+    small = (
+        page.get_by_role("list", name="Camera along the dive").get_by_role("listitem").locator("img").first
+    )
+    wait_for(lambda: small.evaluate("(one) => one.naturalWidth === 160"), "the picture of the axis")
+    page.goto(f"{filmed.url}/#/sessions")
+    face = page.locator(".session").filter(has_text="filmed").locator(".face img")
+    wait_for(lambda: face.evaluate("(one) => one.naturalWidth === 160"), "the session's face")
+    expect(page.get_by_role("region", name="Storage")).to_contain_text(re.compile(r"\d kB of film"))
 
 
 def test_a_browser_without_the_codec_shows_pictures_and_says_so(page: Page, filmed: DiveSite) -> None:
@@ -126,7 +126,7 @@ def test_firefox_plays_the_film_and_seeks_it(filmed: DiveSite, tmp_path: Path) -
         firefox.open(f"{filmed.url}/#/sessions/1")
         firefox.wait_for(f"{FILM}?.readyState >= 2")
         firefox.evaluate(f"void ({FILM}.currentTime = {SOUGHT})")
-        firefox.wait_for(f"!{FILM}.seeking && ({READ})({FILM}) === {number_at(SOUGHT)}")
+        firefox.wait_for(f"!{FILM}.seeking && ({READ_NUMBER})({FILM}) === {number_at(SOUGHT)}")
         firefox.evaluate(f"void {FILM}.play()")
-        firefox.wait_for(f"({READ})({FILM}) > {number_at(SOUGHT) + 5}")
+        firefox.wait_for(f"({READ_NUMBER})({FILM}) > {number_at(SOUGHT) + 5}")
         assert firefox.complaints == []

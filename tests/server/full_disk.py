@@ -1,6 +1,7 @@
 """`python -m tests.server.full_disk FOLDER ACT`: record on a disk that fills up and is freed again.
 
-FOLDER is on a disk of its own. ACT is "record", or "purge": then room comes from a session that is removed.
+FOLDER is on a disk of its own. ACT is "record"; or "film": then a film is recorded beside; or "purge": then
+room comes from a session that is removed.
 Tells in JSON what came of it.
 """
 
@@ -11,7 +12,9 @@ import random
 import sqlite3
 import sys
 from collections.abc import Awaitable, Callable
-from contextlib import closing
+from contextlib import closing, suppress
+from io import BytesIO
+from math import inf
 from pathlib import Path
 from time import time
 from typing import Any
@@ -21,10 +24,13 @@ from sqlalchemy import update
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, row
+from robot_runtime.vision.film import open_coder
 from server.features.backup.command import back_up
 from server.features.comm_tests.runs import CommTestStore
 from server.features.scenarios.library import _shipped, keep_scenario
 from server.library.catalogue import Catalogue
+from server.library.content import Recording
+from server.library.film import film_from, write_mp4
 from server.library.listing import Listing
 from server.library.retention import RetentionWorker
 from server.platform.disk_space import FileWriteError
@@ -33,11 +39,16 @@ from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, SetupError, make_folders
 from server.platform.store import Store, StoreError
-from server.recording.recorder import Recorder
-from server.recording.session import new_row
-from tests.server.blocks import depth_record
+from server.recording.recorder import BACKLOG_BYTES, PERIOD, Recorder
+from server.recording.session import find_row, new_row
+from tests.film import HEIGHT, RATE, WIDTH, code_numbers, read_film
+from tests.server.blocks import depth_block, depth_record, film_block
 from tests.server.features.comm_tests.stored_runs import LOST, begin
 
+DEPTHS = 50
+"""Samples a second."""
+FILLER = b"\0\0\1\x0c" + 40_000 * b"\xff"
+"""A unit of H.264 that decoders pass over."""
 LEFT_BYTES = 400_000
 """Room for the database when recording begins."""
 COUNT = 1000
@@ -114,6 +125,56 @@ async def refusal(work: Callable[[], Awaitable[object]]) -> str:
     return ""
 
 
+async def film(data: DataFolder, config: Path) -> dict[str, Any]:
+    """Record a dive with its film; the disk is full for longer than memory holds the film."""
+    settings, clock = Settings(data=data, config=config), SimulatedClock()
+    store, notices = Store(data.database), list[str]()
+    told = Notices(clock, lambda block: notices.append(block.payload.decode()))
+    recorder = Recorder(store, clock, told, lambda: None)
+    storing = asyncio.create_task(recorder.run())
+    session = await recorder.start(new_row(settings, clock, "full", "", "null"))
+    recording = Recording(store, find_row(store, session.id))
+    ballast = data.path / "ballast"
+    fill(ballast, 6 * LEFT_BYTES)
+    coder, seconds = open_coder(RATE, "medium", (WIDTH, HEIGHT)), 0
+
+    def add_second() -> None:
+        nonlocal seconds
+        first = seconds * round(RATE)
+        recorder.add(depth_block(seconds * DEPTHS, DEPTHS, start=float(seconds)))
+        pictures = code_numbers(coder, range(first, first + round(RATE)), float(seconds))
+        for number, (taken, picture) in enumerate(pictures, first):
+            recorder.add(film_block(number, taken, picture + FILLER))
+        seconds += 1
+
+    while store.failing is None:
+        add_second()
+        # The recorder stores by itself, and says that it cannot.
+        await asyncio.sleep(PERIOD)
+    full, refused = recording.counts()["film"], seconds
+    while (seconds - refused) * RATE * len(FILLER) < 1.5 * BACKLOG_BYTES:
+        add_second()
+        with suppress(StoreError):
+            await recorder.flush()
+    ballast.unlink()
+    add_second()
+    done = await recorder.stop(session.id)
+    storing.cancel()
+    shown = BytesIO()
+    write_mp4(film_from(recording, -inf, inf), shown)
+    report = {
+        "told": [text for text in notices if "Nothing can be stored" in text],
+        "state": done.state,
+        "full": full,
+        "sent": {"depth": seconds * DEPTHS, "film": seconds * round(RATE)},
+        "stored": recording.counts(),
+        "shown": [number for _, number in read_film(shown.getvalue())],
+        "missed": Listing(store).detail(session.id).model_dump(include={"gaps"})["gaps"],
+    }
+    store.close()
+    return report
+
+
 async def purge(data: DataFolder, config: Path) -> dict[str, Any]:
     """Record until not a byte is left, and remove the session."""
     settings, clock, chance = Settings(data=data, config=config), SimulatedClock(), random.Random(1)
@@ -171,7 +232,7 @@ def main() -> None:
     prepare(data)
     config = data.path / "robot.toml"
     config.touch()
-    report = asyncio.run(record(data, config) if sys.argv[2] == "record" else purge(data, config))
+    report = asyncio.run({"record": record, "film": film, "purge": purge}[sys.argv[2]](data, config))
     with closing(sqlite3.connect(data.database)) as database:
         (report["integrity"],) = database.execute("PRAGMA integrity_check").fetchone()
         report["gaps"] = database.execute("SELECT kind FROM gap").fetchall()

@@ -2777,6 +2777,8 @@ export interface components {
             database: number;
             /** @description bytes of the exported files */
             exports: number;
+            /** @description bytes of the films of all sessions, those in the bin included */
+            film_bytes: number;
             /** @description free bytes of this disk */
             free: number;
             /** @description days after which a session is moved to the bin; 0: never */

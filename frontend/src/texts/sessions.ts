@@ -8,6 +8,7 @@ export const sessions = {
   storage: {
     title: 'Storage',
     recordings: 'Recordings',
+    films: (size: string) => `${size} of film`,
     exports: 'Exports',
     backups: 'Backups',
     other: 'Other files',

@@ -15,10 +15,15 @@ from robot_runtime.vision.cards import CameraCard
 
 
 def needs_camera(scenario: Scenario) -> bool:
-    """Return True if the scenario shows anything to its camera; a card camera sees only cards."""
-    return scenario.vision.camera == "scene" or any(
-        isinstance(event, CommandEvent) and isinstance(event.command, CardCommand)
-        for event in scenario.events
+    """Return True if the scenario films, or shows anything to its camera; a card camera sees only cards."""
+    vision = scenario.vision
+    return (
+        vision.film
+        or vision.camera == "scene"
+        or any(
+            isinstance(event, CommandEvent) and isinstance(event.command, CardCommand)
+            for event in scenario.events
+        )
     )
 
 

@@ -111,12 +111,16 @@ class WaterMotion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VisionChoice:
-    """The camera of the vision node: drawn water with cards, or the rendered scene; rate in Hz."""
+    """The camera of the vision node: drawn water with cards, or the rendered scene; rate in Hz.
+
+    With `film` it is filmed in simulated time; on the robot the choice of its sessions is in force.
+    """
 
     camera: Literal["card", "scene"] = "card"
     rate: Annotated[float, VISION_RATE] = 4.0
     colour: Colour = "yellow"
     markers: MarkerDictionary = "none"
+    film: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from robot_runtime.commands import Commands
-from robot_runtime.contract.commands import ArmCommand, MissionCommand
+from robot_runtime.contract.commands import ArmCommand, FilmCommand, MissionCommand
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
 from robot_runtime.contract.documents import MISSION_MARK, Event
 from robot_runtime.contract.topics import EVENT
@@ -32,6 +32,8 @@ AFTERWARDS = 0.5
 """s after the end for which the robot is watched as it disarms."""
 PROGRESS_EVERY = 1.0
 """s of simulated time."""
+FILM_RENEWAL = 10.0
+"""s of simulated time, as a server renews its order to film."""
 
 
 class RunListener(Protocol):
@@ -113,6 +115,8 @@ class _RunLoop:
         robot.outbox.flush()
         robot.announce()
         self._tasks.append(PeriodicTask(0.0, PROGRESS_EVERY, self._report_progress))
+        if self._rig.scenario.vision.film:
+            self._tasks.append(PeriodicTask(0.0, FILM_RENEWAL, self._film))
 
     def play(self) -> None:
         """Run all events, until the end or until it is stopped."""
@@ -225,6 +229,9 @@ class _RunLoop:
 
     def _add_bookmark(self, text: str) -> None:
         self._listener.event("marker", time=_round_time(self._rig.clock.now()), text=text)
+
+    def _film(self) -> None:
+        self._rig.robot.vision.film(FilmCommand(seconds=2 * FILM_RENEWAL))
 
     def _report_progress(self) -> None:
         self._listener.event("progress", time=_round_time(self._rig.clock.now()))

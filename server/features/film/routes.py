@@ -47,7 +47,7 @@ def get_film_plan(
         refusal=choice.refusal,
         picture_bytes=PictureBytes(**choice.picture_bytes),
         measured=choice.is_measured,
-        room=free_for_recordings(store, settings),
+        room=max(0, free_for_recordings(store, settings)),
     )
 
 

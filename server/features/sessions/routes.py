@@ -6,13 +6,13 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 from fastapi import Query, Request
 from fastapi.responses import Response
 
-from robot_runtime.contract.topics import THUMBNAIL
 from server.http.dependencies import Provided
 from server.http.heavy_requests import RecordingTurn, TooManyHeavyError
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.policy import Need
 from server.library.catalogue import Catalogue
 from server.library.content import reading_content
+from server.library.film import CodecMissingError, small_picture
 from server.library.listing import GroupsQuery, ListQuery
 from server.library.missions import RecordedMission, read_missions
 from server.library.opening import SECONDS_MAX, Moment, OpenRecording
@@ -135,6 +135,7 @@ async def purge_session(
     "GET /sessions/{session}/thumbnail",
     Need.VIEWER,
     UnknownSessionError,
+    CodecMissingError,
     TooManyHeavyError,
     media_type="image/jpeg",
     linked=True,
@@ -147,16 +148,20 @@ def get_thumbnail(
 ) -> Response:
     """Return the first small camera picture from this time on.
 
-    With the ETag of an earlier answer in If-None-Match it is 304.
+    Of a session without such pictures it is made of the film: of the key picture before that time. With the
+    ETag of an earlier answer in If-None-Match it is 304.
     """
     # A browser asks each time: in another database the number is another session's.
     tag = f'"{recording.row.identifier}-{time!r}"'
     headers = {"cache-control": "private, no-cache", "etag": tag}
     if request.headers.get("if-none-match") == tag:
         return Response(status_code=304, headers=headers)
-    for _moment, jpeg in recording.pictures(THUMBNAIL.name, recording.row.started_steady + time):
-        return Response(jpeg, media_type="image/jpeg", headers=headers)
-    raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
+    steady = recording.row.started_steady + time
+    with reading_content(recording.row):
+        jpeg = small_picture(recording, steady)
+    if jpeg is None:
+        raise NotFoundError(f"Session {recording.row.id} has no picture from {time:g} s on.")
+    return Response(jpeg, media_type="image/jpeg", headers=headers)
 
 
 @router.operation("GET /sessions/{session}/timeline", Need.VIEWER, UnknownSessionError, TooManyHeavyError)

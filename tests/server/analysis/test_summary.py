@@ -15,7 +15,7 @@ from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.schemas import CURVE_POINTS, SessionSummary
 from tests.server.analysis.dives import ARMED, DISARMED, END, SHOWN, STARTED_STEADY, depth_at, dive, record
-from tests.server.blocks import thumbnail_block
+from tests.server.blocks import film_block, thumbnail_block
 
 
 def events(*severities: documents.Severity) -> Block:
@@ -43,6 +43,13 @@ def test_a_summary_says_how_deep_how_long_by_what_and_what_was_seen(store: Store
     expected = [depth_at(STARTED_STEADY + (part + 1) * length / CURVE_POINTS) for part in range(CURVE_POINTS)]
     # The last of each part is the deepest; a sample may be missing at its end.
     assert summary.curve == pytest.approx(expected, abs=0.03)
+
+
+def test_a_session_without_small_pictures_has_its_face_from_the_film(
+    store: Store, settings: Settings
+) -> None:
+    film = [film_block(number, time, b"picture") for number, time in enumerate((101.0, 105.0))]
+    assert summarised(store, settings, [*dive(), *film]).face == pytest.approx(105.0 - STARTED_STEADY)
 
 
 def test_a_session_without_depth_pictures_and_arming_has_nothing_to_say(

@@ -252,12 +252,15 @@ async def test_where_space_is_short_the_oldest_films_go_before_any_session(
             keeper.recorder.add(film_block(number, 50.0 + number, bytes(20_000)))
         await keeper.recorder.stop(session)
     await keeper.catalogue.change(1, kept=True)
+    films = storage_module.measure(store, settings).film_bytes
+    assert films == pytest.approx(4_000_000, rel=0.01)
     before = [keeper.catalogue.find(number) for number in (1, 2, 3, 4)]
     free = 10**9 - 1_500_000
     await keeper.retention.apply(NOW)
     assert keeper.names() == ["newest", "older", "oldest", "kept"]
     gaps = keeper.gaps()
     assert gaps == [(2, "film", "removed", 50), (3, "film", "removed", 50)]
+    assert storage_module.measure(store, settings).film_bytes == films / 2
     for number, row in zip((1, 2, 3, 4), before, strict=True):
         counts = Recording.open(store, number).counts()
         assert counts == {"depth": 300} | ({} if number in (2, 3) else {"film": 50})

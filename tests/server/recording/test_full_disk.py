@@ -61,3 +61,17 @@ def test_recording_loses_nothing_when_the_disk_is_full_for_a_while(tmp_path: Pat
         assert "disk" in text
         assert "full" in text
     assert report["cells"] == [0, 1]
+
+
+def test_where_the_disk_is_full_the_film_goes_before_the_samples(tmp_path: Path) -> None:
+    report = perform(tmp_path, "film", "16m")
+    assert len(report["told"]) == 1
+    assert "the disk is full" in report["told"][0]
+    sent, stored, full, shown = (report[name] for name in ("sent", "stored", "full", "shown"))
+    assert (report["state"], report["integrity"]) == ("complete", "ok")
+    assert stored["depth"] == sent["depth"]
+    (gap,) = report["missed"]
+    assert (gap["topic"], gap["kind"]) == ("film", "not stored")
+    assert stored["film"] + gap["missed"] == sent["film"]
+    # It plays to the moment at which the disk was full, and on from there.
+    assert shown == [*range(full), *range(sent["film"] - (stored["film"] - full), sent["film"])]

@@ -3,9 +3,12 @@ import type { SessionDetail } from '../../api';
 
 const FRAMES = 24;
 
+/** The topic of which small pictures are made, if any. */
+export const pictured = (topics: SessionDetail['topics']) => topics.find(({ name }) => name === 'thumbnail') ?? topics.find(({ name }) => name === 'film');
+
 /** Times, s since the start, spread evenly over what there are pictures of. */
 export function frames(topics: SessionDetail['topics']): number[] {
-  const pictures = topics.find(({ name }) => name === 'thumbnail');
+  const pictures = pictured(topics);
   if (pictures === undefined) return [];
   const { first, last, count } = pictures;
   const wanted = Math.min(count, FRAMES);

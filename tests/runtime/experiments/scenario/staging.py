@@ -5,7 +5,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from robot_runtime.contract.topics import Kind
+from robot_runtime.contract.film_picture import FilmPicture
+from robot_runtime.contract.topics import TIME, Kind
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
 from robot_runtime.experiments.scenario.run import ScenarioRun
@@ -31,6 +32,7 @@ class Told:
         self.events: list[dict[str, Any]] = []
         self.rows: dict[str, list[tuple[float, Any]]] = {}
         self.documents: dict[str, list[dict[str, Any]]] = {}
+        self.film: list[tuple[float, FilmPicture]] = []
         self.bytes = b""
 
     def blocks(self, data: bytes) -> None:
@@ -39,6 +41,9 @@ class Told:
         for block in read_blocks(data):
             if block.topic.kind is Kind.ROWS:
                 self.rows.setdefault(block.topic.name, []).extend(read_rows(block))
+            elif block.topic.kind is Kind.FILM:
+                (time,) = TIME.unpack_from(block.payload)
+                self.film.append((time, FilmPicture(block.payload[TIME.size :])))
             elif block.topic.kind is Kind.DOCUMENTS:
                 self.documents.setdefault(block.topic.name, []).extend(json.loads(block.payload))
 

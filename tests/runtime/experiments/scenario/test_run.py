@@ -12,6 +12,7 @@ from pathlib import Path
 from struct import Struct
 from typing import Any
 
+import numpy as np
 import pytest
 
 from robot_runtime.contract.craft import Craft, CraftDocument
@@ -20,6 +21,7 @@ from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import AFTERWARDS, ScenarioRun
 from robot_runtime.simulation.scene.availability import missing
+from server.library.film import decode_film
 from tests.runtime.experiments.scenario.staging import ROOT, Told, document, perform
 
 SHIPPED = sorted((ROOT / "robot_runtime/experiments/scenario/shipped").glob("*.toml"))
@@ -195,6 +197,32 @@ def test_a_card_before_the_camera_changes_the_set_point() -> None:
     assert 2.0 <= seen[0] <= 2.3
     assert 2.7 <= seen[-1] <= 3.0
     assert "Set point 1.00 m: yellow is seen." in report.texts("event")
+
+
+@pytest.mark.skipif(missing() is not None, reason="the scene cannot be rendered here")
+def test_the_rendered_scene_is_filmed_in_the_scenarios_time() -> None:
+    target = '\n[[scene.targets]]\ncolour = "red"\nposition = [0.9, 0.0, 0.2]\nsize = 0.3'
+    scene = 'kind = "natural"\ndepth = 3.0' + target
+    report = perform(document(1, scene=scene, more='[vision]\ncamera = "scene"\nfilm = true'))
+    times = [time for time, _ in report.film]
+    assert times[0] == pytest.approx(0.0, abs=0.01)
+    # One that is searched as well may come half a period early.
+    assert np.diff(times) == pytest.approx(1 / 15, abs=0.5 / 15)
+    # The robot is watched for half a second after the end.
+    assert times[-1] == pytest.approx(1 + AFTERWARDS, abs=0.1)
+    pictures = [frame.to_ndarray(format="bgr24") for _, frame in decode_film(report.film)]
+    assert len(pictures) == len(times)
+    assert {picture.shape for picture in pictures} == {(480, 640, 3)}
+    blue, _, red = pictures[0].reshape(-1, 3).astype(int).T
+    # The ball fills some of the picture of blue water.
+    assert 0.01 < (red > blue + 60).mean() < 0.5
+
+
+def test_a_card_is_filmed_the_same_way_twice() -> None:
+    card = document(1, 'at = 0.2; do = "card"; colour = "yellow"', more="[vision]\nfilm = true")
+    first, second = perform(card), perform(card)
+    assert len(first.film) in range(21, 25)
+    assert first.film == second.film
 
 
 @pytest.mark.skipif(missing() is not None, reason="the scene cannot be rendered here")

@@ -14,6 +14,7 @@ from typing import Any
 from zipfile import ZipFile
 
 import av
+import cv2
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -389,6 +390,22 @@ async def test_lines_are_drawn_into_every_picture(served: Served, tmp_path: Path
             apart = np.abs(clean.to_ndarray(format="gray").astype(int) - lined.to_ndarray(format="gray"))
             # The tape of the depth and its value stand on the right.
             assert apart[:, WIDTH * 3 // 4 :].max() > 40
+
+
+async def test_small_pictures_of_a_session_that_has_none_are_made_of_its_film(
+    served: Served, filmed: tuple[int, float]
+) -> None:
+    session, start = filmed
+    for since, number in ((-1.0, 0), (0.0, 0), (2.5, 2 * int(RATE)), (60.0, None)):
+        answer = await served.api.get(f"/sessions/{session}/thumbnail", params={"time": start + since})
+        if number is None:
+            assert answer.status_code == 404
+            continue
+        assert answer.headers["content-type"] == "image/jpeg"
+        picture = cv2.imdecode(np.frombuffer(answer.content, np.uint8), cv2.IMREAD_COLOR)
+        assert picture is not None
+        assert picture.shape == (120, 160, 3)
+        assert read_number(cv2.resize(picture, (WIDTH, HEIGHT)).astype(np.uint8)) == number
 
 
 async def test_values_go_over_a_film_alone(served: Served, filmed: tuple[int, float]) -> None:
