@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { SessionDetail } from '../src/api';
 import { alike, findTooLong, orderProblem, SHEET_LINES } from '../src/pages/sessions/export/formats';
-import { asked, frames } from '../src/pages/sessions/film';
+import { asked, frames, pictured } from '../src/pages/sessions/film';
 import { depthPath } from '../src/pages/sessions/depthPath';
 import { narrows, NO_FILTERS, queryOf, readFilters, withTags, writeFilters } from '../src/pages/sessions/find';
 import { compareLink, replayLink } from '../src/pages/sessions/links';
@@ -15,14 +15,20 @@ describe('tags', () => {
 });
 
 describe('film', () => {
-  const topics = (count: number, first: number, last: number) =>
-    [{ name: 'thumbnail', count, first, last }] as SessionDetail['topics'];
+  const topic = (count: number, first: number, last: number, name = 'thumbnail') => ({ name, count, first, last }) as SessionDetail['topics'][number];
+
+  it('gives small pictures where there are no others and it can be read', () => {
+    const [small, film] = [topic(1, 1, 2), topic(9, 1, 9, 'film')];
+    expect(pictured([film, small], true)).toBe(small);
+    expect(pictured([film], true)).toBe(film);
+    expect(pictured([film], false)).toBeUndefined();
+  });
 
   it('spreads over the session, and never asks beyond its end', () => {
-    expect(frames([])).toEqual([]);
-    expect(frames(topics(1, 3, 3))).toEqual([3]);
-    expect(frames(topics(3, 1, 5))).toEqual([1, 3, 5]);
-    const long = frames(topics(1800, 1.23456, 3600.98765));
+    expect(frames(undefined)).toEqual([]);
+    expect(frames(topic(1, 3, 3))).toEqual([3]);
+    expect(frames(topic(3, 1, 5))).toEqual([1, 3, 5]);
+    const long = frames(topic(1800, 1.23456, 3600.98765));
     expect(long).toHaveLength(24);
     expect(asked(long.at(-1) ?? Infinity)).toBeLessThanOrEqual(3600.98765);
   });

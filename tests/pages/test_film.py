@@ -114,6 +114,7 @@ def test_a_film_that_cannot_be_shown_says_why(
     page.goto(f"{filmed.url}/#/sessions/{session}")
     expect(page.get_by_role("region", name="Film", exact=True)).to_contain_text(sentence)
     expect(page.get_by_role("slider", name="Depth over time")).to_be_visible()
+    expect(page.get_by_role("region", name="Depth").locator("img")).to_have_count(0)
 
 
 def test_firefox_plays_the_film_and_seeks_it(filmed: DiveSite, tmp_path: Path) -> None:

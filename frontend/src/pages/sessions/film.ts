@@ -3,12 +3,12 @@ import type { SessionDetail } from '../../api';
 
 const FRAMES = 24;
 
-/** The topic of which small pictures are made, if any. */
-export const pictured = (topics: SessionDetail['topics']) => topics.find(({ name }) => name === 'thumbnail') ?? topics.find(({ name }) => name === 'film');
+/** The topic of which small pictures are made, if any; a film that is `readable` gives them where there are no others. */
+export const pictured = (topics: SessionDetail['topics'], readable: boolean) =>
+  topics.find(({ name }) => name === 'thumbnail') ?? (readable ? topics.find(({ name }) => name === 'film') : undefined);
 
 /** Times, s since the start, spread evenly over what there are pictures of. */
-export function frames(topics: SessionDetail['topics']): number[] {
-  const pictures = pictured(topics);
+export function frames(pictures: SessionDetail['topics'][number] | undefined): number[] {
   if (pictures === undefined) return [];
   const { first, last, count } = pictures;
   const wanted = Math.min(count, FRAMES);
