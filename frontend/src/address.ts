@@ -3,7 +3,7 @@ export type Seen = ReadonlyMap<string, string>;
 
 export const readSeen = (text: string): Seen => new Map(new URLSearchParams(text));
 
-export const writeSeen = (seen: Seen): string => new URLSearchParams([...seen]).toString().replaceAll('%2C', ',');
+export const writeSeen = (seen: Seen): string => new URLSearchParams([...seen]).toString().replaceAll('%2C', ',').replaceAll('%2F', '/');
 
 /** The same with these; null takes a name out. */
 export function changedSeen(seen: Seen, changes: Readonly<Record<string, string | number | null>>): Seen {

@@ -26,18 +26,14 @@ export class Router {
   #written = -Infinity;
 
   constructor() {
-    const read = () => {
-      clearTimeout(this.#writing);
-      this.#known = location.hash;
-      const [path = '', seen = ''] = location.hash.replace(/^#\/?/, '').split(/\?(.*)/s);
-      this.#path = path;
-      const [name = '', ...within] = path.split('/');
-      this.current = name === '' ? 'operate' : (ALL.find((page) => page === name) ?? 'unknown');
-      this.within = within;
-      this.seen = readSeen(seen);
-    };
-    window.addEventListener('hashchange', read);
-    read();
+    window.addEventListener('hashchange', this.#read);
+    this.#read();
+  }
+
+  /** Go to what this address names, also where one is there already. */
+  open(hash: string): void {
+    location.hash = hash;
+    this.#read();
   }
 
   get title(): string {
@@ -77,6 +73,17 @@ export class Router {
     const value = Number(text);
     return text.trim() === '' || !Number.isFinite(value) || value < least || value > most ? null : value;
   }
+
+  readonly #read = (): void => {
+    clearTimeout(this.#writing);
+    this.#known = location.hash;
+    const [path = '', seen = ''] = location.hash.replace(/^#\/?/, '').split(/\?(.*)/s);
+    this.#path = path;
+    const [name = '', ...within] = path.split('/');
+    this.current = name === '' ? 'operate' : (ALL.find((page) => page === name) ?? 'unknown');
+    this.within = within;
+    this.seen = readSeen(seen);
+  };
 
   #hash(): string {
     const seen = writeSeen(this.seen);

@@ -25,6 +25,9 @@ describe('what is seen', () => {
       get hash() {
         return stack.at(-1) ?? '';
       },
+      set hash(hash: string) {
+        stack.push(hash);
+      },
       get href() {
         return `http://turtle:8000/${this.hash}`;
       },
@@ -75,6 +78,15 @@ describe('what is seen', () => {
     stack.pop();
     changed();
     expect(router.number('from')).toBeNull();
+  });
+
+  it('is read anew where the same address is opened once more', () => {
+    const router = new Router();
+    const before = router.seen;
+    router.open(location.hash);
+    expect(router.seen).not.toBe(before);
+    router.open('#/tune/parameters?parameter=depth_pid.kp');
+    expect([router.current, router.seen.get('parameter')]).toEqual(['tune', 'depth_pid.kp']);
   });
 
   it('never takes back who has gone on', () => {

@@ -1,4 +1,5 @@
-import { describe, expect, it } from 'vitest';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { Arrangement, isChoice } from '../src/layout/arrangement.svelte';
 import { Arranger, type Arranged } from '../src/layout/arrange';
 import { COLUMNS, overlaps, PANELS_MOST, readLayout, ROWS_SEEN, within, type Placed } from '../src/layout/layout';
 import { describe as describePanel, PANELS } from '../src/panels/registry';
@@ -16,6 +17,38 @@ const where = (done: Arranged, id: string) => {
   const found = panels(done).find((one) => one.id === id);
   return found && [found.x, found.y, found.width, found.height];
 };
+
+describe('Arrangement', () => {
+  beforeEach(() => {
+    vi.stubGlobal('window', { innerWidth: 1440 });
+  });
+
+  afterEach(() => vi.unstubAllGlobals());
+
+  it('has a name for others until it is changed, and knows which names could be one', async () => {
+    const arrangement = new Arrangement('live');
+    expect(arrangement.named).toBe('standard');
+    expect(await arrangement.choose('sensors', false)).toBeNull();
+    expect(arrangement.named).toBe('sensors');
+    const [first] = arrangement.panels;
+    expect(arrangement.do((one, panels) => one.remove(panels, first?.id ?? ''))).toBe(true);
+    expect(arrangement.named).toBeNull();
+    arrangement.undo();
+    expect(arrangement.named).toBe('sensors');
+    for (const name of ['standard', 'sensors', 'kept/12']) expect(isChoice(name)).toBe(true);
+    for (const nonsense of ['', 'nonsense', 'kept/', 'kept/x', 'kept/1/2', 'kept/-1', `kept/${'9'.repeat(99)}`, 'constructor']) expect(isChoice(nonsense)).toBe(false);
+  });
+
+  it('shows the layout of an address without taking it for this browser’s own', async () => {
+    const stored = new Map<string, string>();
+    vi.stubGlobal('localStorage', { getItem: (key: string) => stored.get(key) ?? null, setItem: (key: string, value: string) => stored.set(key, value) });
+    const arrangement = new Arrangement('live');
+    await arrangement.choose('sensors', false);
+    expect(new Arrangement('live').named).toBe('standard');
+    await arrangement.choose('sensors');
+    expect(new Arrangement('live').named).toBe('sensors');
+  });
+});
 
 describe('Arranger', () => {
   it('moves into free room', () => {

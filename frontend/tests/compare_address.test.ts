@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { MOST_SIGNALS, readAlign, readSegments, readSignals, readView, rounded, writeAlign, writeSegments } from '../src/pages/sessions/compare/seen';
+import { MOST_SIGNALS, readAlign, readFigures, readSegments, readSignals, readView, rounded, writeAlign, writeFigures, writeSegments } from '../src/pages/sessions/compare/seen';
 
 const START = { by: 'start', number: 1, marker: '', step: '' };
 
@@ -28,6 +28,11 @@ describe('the address of a comparison', () => {
     for (const text of ['', 'nonsense', 'set_point', 'set_point:0', 'set_point:1.5', 'set_point:1e9', 'set_point:NaN', `marker:${'x'.repeat(101)}`, 'constructor']) {
       expect(readAlign(text)).toEqual(START);
     }
+  });
+
+  it('names the part of the time that the figures cover', () => {
+    expect(readFigures(writeFigures({ start: -1.23456, end: 30 }))).toEqual({ start: -1.235, end: 30 });
+    for (const none of ['', '5', '5,', ',5', '5,1', '1,2,3', 'a,b', '1,1e999', ' , ']) expect(readFigures(none)).toBeNull();
   });
 
   it('shows all of the time where the range is none', () => {

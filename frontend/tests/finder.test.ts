@@ -1,5 +1,6 @@
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
+import { FinderState } from '../src/finder.svelte';
 import { describe, expect, it } from 'vitest';
 import { LEFT_HAND, RIGHT_HAND } from '../src/drive/keys';
 import { keyGroups } from '../src/finder/keys';
@@ -31,5 +32,20 @@ describe('the list of keys', () => {
     const manual = readFileSync(path.resolve(import.meta.dirname, '../../docs/reference/keys.md'), 'utf8');
     const tables = keyGroups().map(({ title, keys }) => [`## ${title}`, '', '| key | does |', '|---|---|', ...keys.map(({ caps, what }) => `| ${caps} | ${what} |`), ''].join('\n'));
     expect(manual.slice(manual.indexOf('## '))).toBe(tables.join('\n'));
+  });
+});
+
+describe('FinderState', () => {
+  const key = (name: string, more: object = {}) => ({ key: name, ctrlKey: false, metaKey: false, altKey: false, ...more }) as KeyboardEvent;
+
+  it('takes what is typed before the search is there, and leaves Esc and everything else to the page', () => {
+    const finder = new FinderState();
+    expect(finder.takes(key('f'))).toBe(false);
+    finder.shown = 'find';
+    for (const one of ['f', 'i', ' ', 'Enter']) expect(finder.takes(key(one))).toBe(true);
+    for (const other of [key('Escape'), key('Tab'), key('k', { ctrlKey: true })]) expect(finder.takes(other)).toBe(false);
+    expect(finder.typed).toBe('fi ');
+    finder.ready = true;
+    expect(finder.takes(key('n'))).toBe(false);
   });
 });

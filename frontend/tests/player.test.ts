@@ -36,6 +36,7 @@ class Session implements Source {
         events: [],
         markers: [],
         holes: [],
+        filmed: false,
         ...this.made,
       },
     });

@@ -6,10 +6,10 @@ from datetime import datetime
 from itertools import chain, islice, pairwise
 
 from pydantic import Field
-from sqlmodel import col, select
+from sqlmodel import col, exists, select
 
 from robot_runtime.contract.documents import Event, Severity
-from robot_runtime.contract.topics import STATE, TOPICS
+from robot_runtime.contract.topics import FILM, STATE, TOPICS
 from server.library.bookmarks import select_bookmarks
 from server.library.content import Recording
 from server.library.schemas import SHOWN_MAX, Bookmark
@@ -48,6 +48,7 @@ class Timeline(Schema):
     started: datetime = Field(description="UTC")
     started_steady: float = Field(description="the same moment on the steady clock of its samples, s")
     duration: float = Field(description="s, up to the last samples that are stored")
+    filmed: bool = Field(description="whether there are pictures of a film")
     events: list[Moment] = Field(description=f"in order of time, the first {EVENTS_MAX}")
     markers: list[Bookmark] = Field(description=f"in order of time, the first {SHOWN_MAX}")
     holes: list[StateSilence] = Field(description=f"in order of time, the first {SHOWN_MAX}")
@@ -66,6 +67,8 @@ def read_timeline(recording: Recording) -> Timeline:
         # Read one by one: a session of a day has tens of thousands.
         silences = _find_silences(((first, last) for first, last in spans), row.started_steady, row.duration)
         holes = list(islice(silences, SHOWN_MAX))
+        pictures = exists().where(col(Chunk.session_id) == row.id, col(Chunk.topic) == FILM.name)
+        filmed = database.connection().execute(select(pictures)).scalar_one()
     session = from_row(row)
     return Timeline(
         name=session.name,
@@ -73,6 +76,7 @@ def read_timeline(recording: Recording) -> Timeline:
         started=session.started,
         started_steady=row.started_steady,
         duration=session.duration,
+        filmed=filmed,
         events=read_events(recording, EVENTS_MAX),
         markers=markers,
         holes=holes,

@@ -28,8 +28,16 @@ def amplitude(stack: Stack) -> Iterator[None]:
 def test_a_gain_is_changed_live_undone_saved_and_restored(any_page: Page, stack: Stack) -> None:
     page = any_page
     page.goto(f"{stack.url}/#/tune/parameters")
-    page.get_by_label("Find parameters").fill("pid metre")
+    # A search of before does not hide what is found.
+    page.get_by_label("Find parameters").fill("amplitude")
     gain = page.get_by_label(KP, exact=True)
+    expect(gain).to_have_count(0)
+    page.keyboard.press("Control+k")
+    page.keyboard.type(KP)
+    page.keyboard.press("Enter")
+    expect(gain).to_be_focused()
+    expect(gain).to_be_in_viewport()
+    page.get_by_label("Find parameters").fill("pid metre")
     before = str(value(stack, KP)).removesuffix(".0")
     expect(gain).to_have_value(before)
 

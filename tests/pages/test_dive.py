@@ -1,14 +1,15 @@
 """A session's page as one dive: curve, moment, segments, range and track, by pointer, keys and address."""
 
 import re
+import time
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, ViewportSize, expect
 
 from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.browser.opening import DESKTOP, opened_page, signed_in
+from tests.browser.opening import DESKTOP, PHONE, opened_page, signed_in
 from tests.pages.dive_site import DiveSite, recorded_site
 from tests.server.analysis.dives import dive, record
 
@@ -94,7 +95,7 @@ def test_a_replay_is_sought_on_its_depth_profile(page: Page, dives: DiveSite) ->
     card = page.get_by_label("Player").get_by_role("button", name="Yellow card")
     expect(card).to_have_attribute("title", re.compile("^00:12 Yellow card"))
     card.click()
-    expect(page).to_have_url(re.compile(r"#/replay/1\?at=12\.2$"))
+    expect(page).to_have_url(re.compile(r"#/replay/1\?.*\bat=12\.2\b"))
 
 
 def test_a_moment_is_looked_at_in_curve_and_charts_of_a_replay_alike(page: Page, dives: DiveSite) -> None:
@@ -118,6 +119,37 @@ def test_a_moment_is_looked_at_in_curve_and_charts_of_a_replay_alike(page: Page,
     expect(slider).to_have_attribute("aria-valuetext", re.compile("^00:20, "))
     page.mouse.move(0, 0)
     expect(slider.locator("b")).to_be_hidden()
+
+
+def test_layout_span_range_and_ends_are_in_the_address(page: Page, dives: DiveSite) -> None:
+    page.goto(f"{dives.url}/#/replay/1?at=20&from=5&to=15&layout=sensors&span=30")
+    layout, span = page.get_by_label("Layout of the panels"), page.get_by_label("Time shown").first
+    expect(layout.locator("option:checked")).to_have_text("Sensors")
+    expect(span).to_have_value("30")
+    expect(page.get_by_text("Zoomed").first).to_be_visible()
+    page.reload()
+    expect(page.get_by_text("Zoomed").first).to_be_visible()
+    expect(page).to_have_url(re.compile(r"\?at=20&from=5&to=15&layout=sensors&span=30$"))
+    layout.select_option("Standard")
+    expect(page).to_have_url(re.compile("layout=standard"))
+    page.go_back()
+    expect(layout.locator("option:checked")).to_have_text("Sensors")
+    page.get_by_role("button", name="Resume").first.click()
+    expect(page).to_have_url(re.compile(r"\?at=20&layout=sensors&span=30$"))
+
+    page.goto(f"{dives.url}/#/replay/1?at=x&from=9&to=2&layout=nonsense&span=7&tab=%00")
+    expect(span).to_have_value("60")
+    expect(page).to_have_url(re.compile(r"\?at=0&layout=sensors&span=7&"))
+
+    page.goto(f"{dives.url}/#/sessions/1/study?y-ends=-1,1&x-ends=nonsense")
+    least, most = page.get_by_label("x, least", exact=True), page.get_by_label("y, most", exact=True)
+    expect(page.get_by_label("y, least", exact=True)).to_have_value("-1")
+    expect(least).to_have_value("")
+    most.fill("2")
+    most.press("Enter")
+    expect(page).to_have_url(re.compile(r"y-ends=-1,2"))
+    page.go_back()
+    expect(most).to_have_value("1")
 
 
 def test_the_signals_of_a_session_are_studied(page: Page, dives: DiveSite) -> None:
@@ -151,3 +183,29 @@ def test_the_signals_of_a_session_are_studied(page: Page, dives: DiveSite) -> No
 def test_what_cannot_be_shown_is_said(page: Page, dives: DiveSite, address: str, sentence: str) -> None:
     page.goto(f"{dives.url}/#/sessions/{address}")
     expect(page.get_by_text(sentence)).to_be_visible()
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_a_reader_studies_and_replays_a_dive_and_is_asked_for_nothing_else(
+    browser: Browser, dives: DiveSite, size: ViewportSize
+) -> None:
+    asked = {"session": 1, "ends": time.time() + 3600}
+    token = dives.api.post("/access/reading-links", json=asked).raise_for_status().json()["token"]
+    with browser.new_context(viewport=size) as context:
+        reader = context.new_page()
+        answered: list[tuple[int, str]] = []
+        reader.on("response", lambda response: answered.append((response.status, response.url)))
+        reader.goto(f"{dives.url}/#/sessions/1/study?y-ends=-1,1&read={token}")
+        expect(reader.get_by_role("img", name="control, output against depth, depth (m)")).to_be_visible()
+        expect(reader.get_by_label("y, least", exact=True)).to_have_value("-1")
+        reader.get_by_role("link", name="Data", exact=True).click()
+        expect(reader.get_by_role("button", name="Export")).to_have_count(0)
+        reader.get_by_role("link", name="Dive", exact=True).click()
+        expect(reader.get_by_role("button", name=re.compile("pid, 0.50 m"))).to_be_visible()
+        reader.get_by_role("link", name="Replay", exact=True).click()
+        slider = reader.get_by_role("slider", name="Time since the start of the session")
+        slider.press("ArrowRight")
+        expect(slider).to_have_attribute("aria-valuetext", re.compile("^00:05, "))
+        expect(reader.get_by_role("button", name="Mark", exact=True)).to_have_count(0)
+        expect(reader.get_by_role("button", name="STOP")).to_have_count(0)
+        assert [(status, url) for status, url in answered if not 200 <= status < 300] == []

@@ -3,28 +3,15 @@
 import time
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, StorageState, expect
+from playwright.sync_api import Browser, Page, StorageState, expect
 
 from tests.browser.axe import faults_in_both_themes
+from tests.browser.by_keyboard import press_by_keyboard
 from tests.browser.opening import DESKTOP
 from tests.pages.dive_site import DiveSite
 from tests.pages.test_capture import picture
 from tests.pages.test_flight import opened
 from tests.server.waiting import SECONDS
-
-STOPS = 80
-"""Presses of Tab that lead past everything on the page."""
-
-
-def press_by_keyboard(page: Page, control: Locator, key: str = "Enter") -> None:
-    """Go to a control by Tab alone, and press the key there."""
-    expect(control).to_be_visible()
-    for _ in range(STOPS):
-        if control.evaluate("(one) => one === document.activeElement"):
-            page.keyboard.press(key)
-            return
-        page.keyboard.press("Tab")
-    raise AssertionError(f"Tab does not reach {control}")
 
 
 def wait_for_surge(page: Page, site: DiveSite) -> None:

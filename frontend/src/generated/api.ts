@@ -2879,6 +2879,8 @@ export interface components {
             duration: number;
             /** @description in order of time, the first 2000 */
             events: components["schemas"]["Moment"][];
+            /** @description whether there are pictures of a film */
+            filmed: boolean;
             /** @description in order of time, the first 2000 */
             holes: components["schemas"]["StateSilence"][];
             /** @description in order of time, the first 2000 */

@@ -26,6 +26,11 @@ interface Standing {
 
 type Stored = Partial<Record<'choice' | 'title' | 'changed' | 'document' | 'version', unknown>>;
 
+/** Whether this could be a choice: the name of a shipped layout, or one that the server may have. */
+export const isChoice = (text: string): boolean => /^kept\/\d{1,15}$/.test(text) || isShipped(text);
+
+export const isShipped = (choice: string): boolean => SHIPPED.some(({ name }) => name === choice);
+
 export const savedChoice = (id: SavedLayout['id']): string => `kept/${id}`;
 
 /** The layout of Operate, or of replays, in this browser: which one, how it was changed, what can be undone. */
@@ -59,6 +64,11 @@ export class Arrangement {
 
   get changed(): boolean {
     return this.#now.changed;
+  }
+
+  /** how others get to it; null where it has no name, or is not any more what its name says */
+  get named(): string | null {
+    return this.changed || this.choice === '' ? null : this.choice;
   }
 
   get undoable(): boolean {
@@ -108,22 +118,26 @@ export class Arrangement {
 
   readonly reset = (): void => this.#apply(shipped(STANDARD));
 
-  /** Show another layout. Returns why not, in words; null where it is shown. */
-  async choose(choice: string): Promise<string | null> {
-    if (SHIPPED.some(({ name }) => name === choice)) {
-      this.#apply(shipped(choice));
+  /**
+   * Show another layout. Returns why not, in words; null where it is shown.
+   *
+   * @param remember false: this browser's own comes again after a reload, unless what is shown is changed
+   */
+  async choose(choice: string, remember = true): Promise<string | null> {
+    if (isShipped(choice)) {
+      this.#apply(shipped(choice), remember);
       return null;
     }
     const answer = await api.layout(Number(choice.replace('kept/', '')));
     if ('problem' in answer) return answer.problem;
-    return this.take(answer.value.document, answer.value.name, choice, answer.value.version);
+    return this.take(answer.value.document, answer.value.name, choice, answer.value.version, remember);
   }
 
   /** Show what this text or object holds. Returns why not, in words; null where it is shown. */
-  take(given: unknown, title: string, choice = '', version: number | null = null): string | null {
+  take(given: unknown, title: string, choice = '', version: number | null = null, remember = true): string | null {
     const layout = readLayout(given);
     if ('problem' in layout) return layout.problem;
-    this.#apply({ panels: layout.panels, choice, title, changed: choice === '', version });
+    this.#apply({ panels: layout.panels, choice, title, changed: choice === '', version }, remember);
     return null;
   }
 
@@ -164,15 +178,15 @@ export class Arrangement {
     this.#remember();
   }
 
-  #apply(standing: Standing): void {
-    this.#become({ ...standing, panels: inReadingOrder(standing.panels) });
+  #apply(standing: Standing, remember = true): void {
+    this.#become({ ...standing, panels: inReadingOrder(standing.panels) }, remember);
     this.message = texts.done.shown(standing.title);
   }
 
-  #become(next: Standing): void {
+  #become(next: Standing, remember = true): void {
     this.#past = [...this.#past, this.#now].slice(-UNDO_MOST);
     this.#now = next;
-    this.#remember();
+    if (remember) this.#remember();
   }
 
   #remember(): void {
@@ -185,7 +199,7 @@ export class Arrangement {
     if (stored === null) return;
     const { choice, title, changed, version, document } = stored;
     // What comes with the program is as this version has it, and as this screen wants it.
-    if (changed === false && SHIPPED.some(({ name }) => name === choice)) {
+    if (changed === false && isShipped(String(choice))) {
       this.#now = shipped(String(choice));
       return;
     }

@@ -370,6 +370,7 @@ def test_the_timeline_has_events_bookmarks_and_gaps(store: Store, settings: Sett
     assert [(mark.time, mark.text) for mark in timeline.markers] == [(105.5 - STARTED_STEADY, "here")]
     assert timeline.holes == [StateSilence(start=101 - STARTED_STEADY, end=111 - STARTED_STEADY)]
     assert timeline.started_steady == STARTED_STEADY
+    assert not timeline.filmed
 
 
 async def test_over_http(settings: Settings) -> None:

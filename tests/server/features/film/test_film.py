@@ -79,6 +79,7 @@ def now(served: Served) -> float:
 async def test_a_film_is_described_and_every_picture_is_played_at_its_time(served: Served) -> None:
     start = now(served) + 1.0
     session = await record(served, h264(start))
+    assert (await served.api.get(f"/sessions/{session}/timeline")).json()["filmed"]
     film = (await served.api.get(f"/sessions/{session}/film")).json()
     assert film["pictures"] == COUNT
     assert film["codec"].startswith("avc1.")

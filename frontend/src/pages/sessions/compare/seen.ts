@@ -1,4 +1,4 @@
-/** What the address says of a comparison: `from` and `to` (s on the common axis), `signals`, `align` and `segments`. */
+/** What the address says of a comparison: `from` and `to` (s on the common axis), `signals`, `align`, `figures` and `segments`. */
 import type { Align, SegmentChoice } from '../../../api';
 import type { View } from './figure';
 
@@ -34,6 +34,18 @@ export function writeAlign({ by, number, marker, step }: Align): string | null {
 /** A part of the time; null where the address names none, or its end does not come after its start. */
 export function readView(from: number | null, to: number | null): View | null {
   return from === null || to === null || to <= from ? null : { start: from, end: to };
+}
+
+/** The part of the time that the figures cover, as `12.5,30`; null where it is none. */
+export function readFigures(text: string): View | null {
+  const [start = NaN, end = NaN, ...more] = text.split(',').map((one) => (one.trim() === '' ? NaN : Number(one)));
+  return more.length === 0 && Number.isFinite(start) && Number.isFinite(end) ? readView(start, end) : null;
+}
+
+/** The same for the address. */
+export function writeFigures(view: View): string {
+  const { start, end } = rounded(view);
+  return `${start},${end}`;
 }
 
 /** To the millisecond, as it stands in an address. */

@@ -42,6 +42,16 @@ export function drawSpectra(spectra: readonly Spectrum[], token: (name: string) 
 
 export const spectrumColour = (place: number): string => COLOURS[place % COLOURS.length] ?? COLOURS[0];
 
+/** The ends that an address gives as `0,1.5`, `,1.5` or `0,`; automatic where it is none of these. */
+export function readLimits(text: string): Limits {
+  const ends = text.split(',').map((end) => (end.trim() === '' ? null : Number(end)));
+  const [least = null, most = null] = ends;
+  return ends.length === 2 && ends.every((end) => end === null || Number.isFinite(end)) ? { least, most } : AUTOMATIC;
+}
+
+/** The same for the address; null where both are automatic. */
+export const writeLimits = ({ least, most }: Limits): string | null => (least === null && most === null ? null : `${least ?? ''},${most ?? ''}`);
+
 export function axisRange({ least, most }: Limits, log: boolean): object {
   const end = (value: number | null) => (value === null ? null : log ? Math.log10(value) : value);
   return least === null && most === null ? { autorange: true } : { range: [end(least), end(most)] };
