@@ -65,6 +65,38 @@ def test_an_edited_scenario_stays_in_the_list_until_it_is_saved(page: Page, site
         (DataFolder(site.data).scenarios / "mine.toml").unlink(missing_ok=True)
 
 
+def test_an_untouched_scenario_follows_the_library_and_leaves_no_draft(page: Page, site: DiveSite) -> None:
+    text = _shipped()["figure_14"].replace('"figure_14"', '"theirs"', 1)
+    later = text.replace("duration = 60", "duration = 61")
+    site.api.post("/scenarios", json={"text": text}).raise_for_status()
+    try:
+        open_scenarios(page)
+        theirs = page.get_by_role("radio", name=re.compile("your own"))
+        theirs.check()
+        page.get_by_role("button", name="Edit", exact=True).click()
+        box = page.get_by_role("textbox", name="Scenario as TOML")
+        expect(box).to_contain_text('name = "theirs"')
+        page.get_by_role("link", name="Sessions", exact=True).click()
+        expect(page.get_by_role("heading", name="Sessions", exact=True)).to_be_visible()
+        site.api.post("/scenarios", json={"text": later}).raise_for_status()
+        page.get_by_role("link", name="Scenarios", exact=True).click()
+        expect(theirs).to_be_checked()
+        edited = page.get_by_role("radio", name=re.compile("^Edited"))
+        expect(edited).to_have_count(0)
+        page.get_by_role("button", name="Edit", exact=True).click()
+        expect(box).to_contain_text("duration = 61")
+        # What is taken back is no draft either.
+        box.focus()
+        page.keyboard.press("Control+End")
+        page.keyboard.type("#")
+        expect(edited).to_be_checked()
+        page.keyboard.press("Backspace")
+        expect(theirs).to_be_checked()
+        expect(edited).to_have_count(0)
+    finally:
+        (DataFolder(site.data).scenarios / "theirs.toml").unlink(missing_ok=True)
+
+
 def test_the_run_after_a_cancelled_one_can_be_cancelled(page: Page, site: DiveSite) -> None:
     text = _shipped()["figure_14"].replace("duration = ", "duration = 3600 # ", 1)
     open_scenarios(page)
