@@ -2,6 +2,7 @@ import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import { addEvent, fieldSource, Raw, readEvents, removeEvent, setField } from '../src/pages/scenarios/eventText';
 import { jsonPlaces, namedPlace, tomlPlaces } from '../src/parts/code/places';
+import { resultWords } from '../src/pages/scenarios/result';
 
 const SHIPPED = new URL('../../robot_runtime/experiments/scenario/shipped/', import.meta.url);
 const TEXT = `# the head
@@ -123,5 +124,15 @@ describe('the place of an entry', () => {
     expect(line(text, find([1, 'name'])?.at)).toBe(7);
     expect(line(text, find([1, 'missing'])?.at)).toBe(6);
     expect(jsonPlaces('{"a": ')(['a'])).not.toBeNull();
+  });
+});
+
+describe('what came of a run', () => {
+  const SUMMARY = { depth: 1.048, armed: 59, controllers: ['PID'], modes: [], cards: [], mission: '', alarms: 2, curve: [], face: null, damaged: false };
+
+  it('is its greatest depth and its alarms, once it has been read', () => {
+    expect(resultWords(SUMMARY)).toEqual(['deepest 1.05 m', '2 alarms']);
+    expect(resultWords({ ...SUMMARY, depth: null, alarms: 0 })).toEqual(['no alarm']);
+    expect(resultWords(null)).toEqual([]);
   });
 });

@@ -48,6 +48,8 @@ export const scenarios = {
   runs: {
     title: (scenario: string) => `Runs of “${scenario}”`,
     seed: (seed: number) => `seed ${seed}`,
+    deepest: (depth: string) => `deepest ${depth} m`,
+    alarms: (count: number) => (count === 0 ? 'no alarm' : count === 1 ? '1 alarm' : `${count} alarms`),
     more: (shown: number, all: number) => `The last ${shown} of ${all}. Sessions has all.`,
     states: {
       recording: { name: 'recording', meaning: 'It runs now.' },
