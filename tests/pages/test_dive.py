@@ -155,7 +155,7 @@ def test_layout_span_range_and_ends_are_in_the_address(page: Page, dives: DiveSi
 def test_the_signals_of_a_session_are_studied(page: Page, dives: DiveSite) -> None:
     page.goto(f"{dives.url}/#/sessions/1")
     page.get_by_role("link", name="Study", exact=True).click()
-    expect(page.get_by_role("img", name="control, output against depth, depth (m)")).to_be_visible()
+    expect(page.get_by_role("img", name="control, output against depth (m)")).to_be_visible()
     page.get_by_label("Across (x)").select_option("control.error")
     expect(page.get_by_role("img", name="control, output against control, error (m)")).to_be_visible()
     expect(page).to_have_url(re.compile(r"#/sessions/1/study\?x=control\.error$"))

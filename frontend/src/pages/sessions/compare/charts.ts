@@ -38,7 +38,8 @@ export const PRESETS: readonly Preset[] = [
   },
 ];
 
-const DEPTHS = new Set([
+/** Signals that are drawn downwards. */
+export const DEPTHS = new Set([
   DEPTH,
   SET_POINT,
   'control.depth',

@@ -2,7 +2,7 @@
 import type { Data, Layout } from 'plotly.js-basic-dist-min';
 import type { Signal, SignalPair, Spectrum } from '../../../api';
 import { study as texts } from '../../../texts/study';
-import { columnWords } from '../compare/charts';
+import { columnWords, DEPTHS } from '../compare/charts';
 
 /** Fixed ends of an axis; null: as the values are. */
 export interface Limits {
@@ -16,13 +16,18 @@ export interface StudyPicture {
   readonly y: string;
   /** the upward axis is logarithmic */
   readonly log: boolean;
+  /** a depth, which grows downwards */
+  readonly downwards: boolean;
 }
 
 export const AUTOMATIC: Limits = { least: null, most: null };
 /** Tokens of the colours, in the order of the signals. */
 const COLOURS = ['series-measured', 'series-third', 'series-4', 'series-5', 'series-6', 'series-7'] as const;
 
-export const signalTitle = ({ topic, column, unit }: Signal): string => `${topic}, ${columnWords(column)}${unit === '' ? '' : ` (${unit})`}`;
+/** The topic and the column's words; once where both are the same. */
+export const signalWords = (topic: string, words: string): string => (topic === words ? topic : `${topic}, ${words}`);
+
+export const signalTitle = ({ topic, column, unit }: Signal): string => `${signalWords(topic, columnWords(column))}${unit === '' ? '' : ` (${unit})`}`;
 
 /** Why these ends cannot be used; '' where they can. */
 export function limitsProblem(axis: string, { least, most }: Limits, log: boolean): string {
@@ -32,12 +37,14 @@ export function limitsProblem(axis: string, { least, most }: Limits, log: boolea
 
 export function drawPair(pair: SignalPair, token: (name: string) => string): StudyPicture {
   const data: Data = { type: 'scatter', mode: 'lines+markers', x: pair.x_values, y: pair.y_values, customdata: pair.time, line: { width: 1, color: token('series-measured') }, marker: { size: 3, color: token('series-measured') }, hovertemplate: '%{x:.4~g}, %{y:.4~g}<br>%{customdata:.2f} s<extra></extra>' };
-  return { data: [data], x: signalTitle(pair.x), y: signalTitle(pair.y), log: false };
+  return { data: [data], x: signalTitle(pair.x), y: signalTitle(pair.y), log: false, downwards: DEPTHS.has(pair.y.name) };
 }
 
 export function drawSpectra(spectra: readonly Spectrum[], token: (name: string) => string): StudyPicture {
   const data = spectra.map(({ signal, frequency, density }, place): Data => ({ type: 'scatter', mode: 'lines', name: signalTitle(signal), x: frequency, y: density, line: { width: 1.5, color: token(spectrumColour(place)) }, hovertemplate: '%{x:.3~g} Hz: %{y:.3~g}<extra></extra>' }));
-  return { data, x: texts.spectrum.frequency, y: texts.spectrum.density, log: true };
+  const units = new Set(spectra.map(({ signal }) => signal.unit));
+  const [unit = ''] = units;
+  return { data, x: texts.spectrum.frequency, y: texts.spectrum.density(units.size > 1 || unit === '' ? texts.spectrum.anyUnit : /\W/.test(unit) ? `(${unit})` : unit), log: true, downwards: false };
 }
 
 export const spectrumColour = (place: number): string => COLOURS[place % COLOURS.length] ?? COLOURS[0];
@@ -52,9 +59,13 @@ export function readLimits(text: string): Limits {
 /** The same for the address; null where both are automatic. */
 export const writeLimits = ({ least, most }: Limits): string | null => (least === null && most === null ? null : `${least ?? ''},${most ?? ''}`);
 
-export function axisRange({ least, most }: Limits, log: boolean): object {
+export function axisRange({ least, most }: Limits, log: boolean, downwards = false): object {
   const end = (value: number | null) => (value === null ? null : log ? Math.log10(value) : value);
-  return least === null && most === null ? { autorange: true } : { range: [end(least), end(most)] };
+  // Of a fixed range there may be less than a decade; otherwise each has its line.
+  if (least === null && most === null) return { autorange: downwards ? 'reversed' : true, ...(log ? { dtick: 1 } : {}) };
+  if (!downwards) return { range: [end(least), end(most)] };
+  // Plotly's names of the end that it finds itself.
+  return { autorange: least !== null && most !== null ? false : [least === null ? 'min' : 'max', 'reversed'].join(' '), range: [end(most), end(least)] };
 }
 
 /** How a picture looks, `width` px wide. */
@@ -72,6 +83,6 @@ export function layoutOf(picture: StudyPicture, x: Limits, y: Limits, width: num
     hovermode: 'closest',
     hoverlabel: { bgcolor: token('panel'), bordercolor: token('line'), font: { ...font, color: token('text') } },
     xaxis: { ...axis, ...axisRange(x, false), title: { text: picture.x, standoff: 8, font } },
-    yaxis: { ...axis, ...axisRange(y, picture.log), type: picture.log ? 'log' : 'linear', exponentformat: 'e', title: { text: picture.y, standoff: 8, font } },
+    yaxis: { ...axis, ...axisRange(y, picture.log, picture.downwards), type: picture.log ? 'log' : 'linear', exponentformat: 'e', title: { text: picture.y, standoff: 8, font } },
   } as unknown as Partial<Layout>;
 }
