@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import Field
 
 from robot_runtime.contract.toml_text import TomlError, read_toml
-from server.analysis.moments import ControlHistory, Span
+from server.analysis.moments import ControlHistory, ControlPeriod, Span
 from server.library.crafts import describe_crafts
 from server.platform.models import SessionRow
 from server.platform.schema_base import Schema
@@ -91,15 +91,19 @@ def _in_force(history: ControlHistory) -> Iterator[tuple[str, str]]:
             yield title, _shown(history.state[key])
     times = [control.time for control in history.controls]
     used = [control for control in history.controls if _used_while_armed(control.time, times, history.armed)]
-    controllers = list(dict.fromkeys(control.controller for control in used))
+    controllers = list(dict.fromkeys(_name(control) for control in used))
     if controllers:
         yield "Controller", _sequence(controllers)
     gains: dict[str, list[str]] = {}
     for control in used:
         for name, value in control.gains.items():
-            gains.setdefault(f"{control.controller}: {name}", []).append(_shown(value))
+            gains.setdefault(f"{_name(control)}: {name}", []).append(_shown(value))
     for name, values in gains.items():
         yield name, _sequence(list(dict.fromkeys(values)))
+
+
+def _name(control: ControlPeriod) -> str:
+    return control.title or control.controller
 
 
 def _parameters(history: ControlHistory) -> Iterator[tuple[str, str]]:
