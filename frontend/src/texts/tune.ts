@@ -83,9 +83,7 @@ export const tune = {
     show: 'Show',
     showNamed: (run: string) => `Show ${run}`,
     choose: 'Draw its figures on the curve',
-    relay: 'Relay',
     run: 'Run',
-    controller: 'Controller and gains',
     actions: 'Rename or delete',
     name: 'Name of the run',
     states: {
