@@ -16,7 +16,7 @@ WIDTHS = (360, 390, 768, 1024, 1280, 1366, 1440, 1920)
 CROWDED = """async (width) => {
     // What is there for a width alone comes and goes with the next frame.
     for (let frame = 0; frame < 2 || innerWidth !== width; frame++) await new Promise(requestAnimationFrame);
-    const said = '[aria-label=Pages] a, .foot .opener, .top .name, .top .states > *, .top .row > *, .stop';
+    const said = '[aria-label=Pages] a, .foot .opener, .top .program, .top .states > *, .top .row > *, .stop';
     const all = document.querySelectorAll(said);
     const seen = [...all].filter((one) => one.checkVisibility() && !one.matches('.visually-hidden'));
     const boxes = seen.map((one) => [one.textContent.trim(), one.getBoundingClientRect()]);

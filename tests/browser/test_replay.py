@@ -47,7 +47,8 @@ def test_a_moment_is_shown_as_it_was(page: Page, stack: Stack) -> None:
     expect(page.get_by_role("button", name="Hold to arm")).to_have_count(0)
     expect(page.get_by_role("button", name="Apply")).to_have_count(0)
     expect(page.get_by_label("default")).to_be_disabled()
-    expect(page.get_by_role("button", name="no card")).to_be_disabled()
+    expect(page.get_by_role("button", name="no card")).to_have_count(0)
+    expect(page.get_by_text("no card", exact=True)).to_be_visible()
     expect(page.get_by_text("Robot now")).to_be_visible()
 
     # At the beginning the robot was disarmed; at the marker it dived.

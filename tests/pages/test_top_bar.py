@@ -61,7 +61,7 @@ OVERLAPS = """async ([widths, breaks]) => {
         }
         last = width;
         heights[width] = top.offsetHeight;
-        const named = '.name, .stop, .tab, .states > *, .row > *:not(.buttons), .buttons > *';
+        const named = '.program, .stop, .tab, .states > *, .row > *:not(.buttons), .buttons > *';
         const things = [...top.querySelectorAll(named)]
             .map((thing) => [thing, thing.getBoundingClientRect()])
             .filter(([, box]) => box.width > 1 && box.height > 1);
