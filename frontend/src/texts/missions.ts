@@ -215,7 +215,6 @@ export const missions = {
     invalid: 'The mission is not valid.',
     unsaved: 'It runs as it is shown here, saved or not.',
     ready: 'It arms the robot and begins.',
-    armed: 'The robot is armed already. Wait for the end of what it does, or STOP it first.',
     begun: (title: string) => `${title} has begun.`,
     watch: 'Watch on Operate',
     refused: 'The mission was refused',

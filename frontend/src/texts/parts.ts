@@ -50,6 +50,7 @@ export const parts = {
   apply: 'Apply',
   discard: 'Discard',
   stateUnknown: 'The state of the robot is unknown.',
+  armedAlready: 'The robot is armed already. Wait for the end of what it does, or STOP it first.',
   noData: 'no data yet',
   old: (age: string) => `${age} old`,
   oldHint: 'No newer data has arrived',
