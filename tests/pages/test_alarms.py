@@ -10,6 +10,7 @@ from robot_runtime.contract.documents import Alarm
 from robot_runtime.contract.topics import BY_ID
 from robot_runtime.transport.blocks import HEADER, Block
 from tests.pages.dive_site import DiveSite
+from tests.pages.flying import Flown
 
 REASON = "Acknowledge the alarms before the robot is armed again."
 ALARM = Alarm(
@@ -54,3 +55,15 @@ def test_alarms_are_acknowledged_where_they_forbid_arming(page: Page, site: Dive
         page.get_by_role("main").get_by_role("button", name="Acknowledge", exact=True).click()
     assert answer.value.ok
     expect(page.get_by_role("main").get_by_text(REASON)).to_be_visible()
+
+
+def test_the_fin_check_of_an_armed_robot_says_why_it_does_not_begin(page: Page, site: DiveSite) -> None:
+    flown = Flown(page)
+    flown.mode, flown.alarms = "automatic", [{}]
+    page.goto(f"{site.url}/#/system")
+    page.reload()
+    check = page.get_by_role("region", name="Fin check")
+    expect(check.get_by_text("The robot is armed already.")).to_be_visible()
+    expect(check.get_by_role("button", name="Hold to check the fins")).to_be_disabled()
+    # Nothing of it waits for an acknowledgement.
+    expect(check.get_by_role("button", name="Acknowledge")).to_have_count(0)

@@ -61,7 +61,7 @@ def dive(
     ]
     chosen = {
         "name": controller,
-        "title": controller,
+        "title": controller.upper(),
         "gains": [
             {"name": name, "value": value, "minimum": 0, "maximum": 50, "unit": "", "meaning": ""}
             for name, value in gains.items()

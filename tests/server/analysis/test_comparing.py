@@ -261,7 +261,7 @@ def test_differences_between_sessions_are_listed(store: Store, settings: Setting
         for difference in compare(store, session, other).differences
     }
     assert differences == {
-        ("In force", "pid: kp"): ["3", "6"],
+        ("In force", "PID: kp"): ["3", "6"],
         ("robot.toml", "control.rate"): ["", "20"],
     }
     assert compare(store, session, session).sessions[0].id == session

@@ -20,7 +20,7 @@ def test_the_report_is_one_self_contained_file(store: Store, settings: Settings,
     assert main(["report", *map(str, sessions), *options]) == 0
     text = out.read_text(encoding="utf-8")
     assert "calm &lt;b&gt;, hasty" in text
-    assert "<td>In force: pid: kp</td><td>3</td><td>6</td>" in text
+    assert "<td>In force: PID: kp</td><td>3</td><td>6</td>" in text
     assert "Time 0 is arming." in text
     assert "Step from 0.00 m to 0.50 m." in text
     assert "Plotly.newPlot" in text

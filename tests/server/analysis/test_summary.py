@@ -36,7 +36,7 @@ def test_a_summary_says_how_deep_how_long_by_what_and_what_was_seen(store: Store
     summary = summarised(store, settings, [*dive(), events("info", "alarm", "alarm"), *pictures])
     assert summary.depth == pytest.approx(depth_at(END), abs=0.001)
     assert summary.armed == pytest.approx(DISARMED - ARMED)
-    assert (summary.controllers, summary.cards, summary.alarms) == (["pid"], ["yellow"], 2)
+    assert (summary.controllers, summary.cards, summary.alarms) == (["PID"], ["yellow"], 2)
     assert summary.face == pytest.approx(SHOWN - STARTED_STEADY, abs=0.002)
     assert not summary.damaged
     length = END - STARTED_STEADY
@@ -65,7 +65,7 @@ def test_damaged_chunks_cost_what_they_hold_alone(store: Store, settings: Settin
     damage = text("UPDATE chunk SET data = x'00' WHERE topic = 'depth'")
     asyncio.run(store.write(lambda connection: connection.execute(damage)))
     summary = summarise(SessionReader(store), session)
-    assert (summary.damaged, summary.depth, summary.controllers) == (True, None, ["pid"])
+    assert (summary.damaged, summary.depth, summary.controllers) == (True, None, ["PID"])
 
 
 @pytest.mark.parametrize(
