@@ -43,11 +43,11 @@ def test_a_better_value_is_marked_between_like_segments_only(page: Page, dives: 
     expect(better).not_to_have_count(0)
     expect(page).to_have_url(re.compile("segments=like"))
     first = page.get_by_role("combobox", name="two steps")
-    expect(first.locator("option:checked")).to_have_text("2: pid, 1.00 m, 00:12 – 00:32")
+    expect(first.locator("option:checked")).to_have_text("2: PID, 1.00 m, 00:12 – 00:32")
     page.get_by_role("button", name="Align at their beginnings").click()
     expect(page.get_by_text("s since the beginning of the segment")).to_be_visible()
 
-    first.select_option("1: pid, 0.50 m, 00:02 – 00:12")
+    first.select_option("1: PID, 0.50 m, 00:02 – 00:12")
     expect(unlike).to_contain_text("“two steps” holds 0.50 m, “late” holds 1.00 m.")
     expect(page).to_have_url(re.compile("segments=1%3A1,2%3A2"))
     page.go_back()

@@ -36,11 +36,11 @@ def page(browser: Browser, dives: DiveSite) -> Iterator[Page]:
 def test_a_dive_is_looked_at_segment_by_segment(page: Page, dives: DiveSite) -> None:
     page.goto(f"{dives.url}/#/sessions/1")
     curve = page.get_by_role("slider", name="Depth over time")
-    expect(page.get_by_role("list", name="Who swam")).to_contain_text("pid")
+    expect(page.get_by_role("list", name="Who swam")).to_contain_text("PID")
     expect(page.get_by_role("button", name=re.compile("Yellow card"))).to_be_visible()
     figures = page.get_by_role("region", name="Figures", exact=True)
-    first = figures.get_by_role("button", name=re.compile("pid, 0.50 m"))
-    expect(figures.get_by_role("row").filter(has_text="pid, 0.50 m")).to_contain_text("10.0")
+    first = figures.get_by_role("button", name=re.compile("PID, 0.50 m"))
+    expect(figures.get_by_role("row").filter(has_text="PID, 0.50 m")).to_contain_text("10.0")
 
     first.click()
     expect(first).to_have_attribute("aria-pressed", "true")

@@ -29,12 +29,12 @@ async def test_every_session_gets_a_summary_and_only_a_nameless_one_a_name(
     await worker.make_missing()
     named, nameless = (await served.api.get("/sessions")).json()
     assert (named["id"], named["name"], nameless["id"]) == (dives[1], "mine", dives[0])
-    assert nameless["name"] == "1.0 m, pid, yellow card"
+    assert nameless["name"] == "1.0 m, PID, yellow card"
     for listed in (named, nameless):
         assert listed["summary"]["depth"] == pytest.approx(1.0, abs=0.01)
-    matching = await served.api.get("/sessions", params={"controller": "pid", "search": "yellow"})
+    matching = await served.api.get("/sessions", params={"controller": "PID", "search": "yellow"})
     assert [session["id"] for session in matching.json()] == [dives[0]]
-    assert (await served.api.get("/sessions/controllers")).json() == ["pid"]
+    assert (await served.api.get("/sessions/controllers")).json() == ["PID"]
 
 
 async def test_a_summary_is_made_when_a_recording_ends(
