@@ -1,8 +1,9 @@
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
+import { afterEach, describe, expect, it, vi } from 'vitest';
 import { FinderState } from '../src/finder.svelte';
-import { describe, expect, it } from 'vitest';
 import { LEFT_HAND, RIGHT_HAND } from '../src/drive/keys';
+import { readChapters } from '../src/finder/chapters';
 import { keyGroups } from '../src/finder/keys';
 import { matching, type Finding } from '../src/finder/search';
 
@@ -47,5 +48,25 @@ describe('FinderState', () => {
     expect(finder.typed).toBe('fi ');
     finder.ready = true;
     expect(finder.takes(key('n'))).toBe(false);
+  });
+});
+
+describe('a chapter of the help', () => {
+  afterEach(() => void vi.unstubAllGlobals());
+
+  it('is named with its page, unless it is the page itself', async () => {
+    const docs = [
+      { location: 'glossary/', title: 'Glossary' },
+      { location: 'glossary/#depth', title: 'Depth' },
+      { location: 'use/panels/', title: 'Panels' },
+      { location: 'use/panels/#depth', title: 'Depth' },
+    ];
+    vi.stubGlobal('fetch', () => Promise.resolve(Response.json({ docs })));
+    expect((await readChapters()).map(({ title }) => title)).toEqual(['Glossary', 'Depth · Glossary', 'Panels', 'Depth · Panels']);
+  });
+
+  it('is none where there is no help', async () => {
+    vi.stubGlobal('fetch', () => Promise.reject(new TypeError('gone')));
+    expect(await readChapters()).toEqual([]);
   });
 });
