@@ -198,9 +198,9 @@ def test_the_compensation_returns_the_true_pressure(
     d2 = convert(rig, monitor, 0x5A, 0.02)
     d1 = convert(rig, monitor, 0x4A, 0.02)
     reset_pressure_sensor(rig, monitor)
-    felt = compensated(prom(monitor), d1, d2)
-    assert felt[0] == pytest.approx(pressure, abs=10)
-    assert felt[1] == pytest.approx(temperature, abs=0.01)
+    computed = compensated(prom(monitor), d1, d2)
+    assert computed[0] == pytest.approx(pressure, abs=10)
+    assert computed[1] == pytest.approx(temperature, abs=0.01)
 
 
 def test_a_conversion_read_too_early_is_zero(rig: BoardRig, monitor: SerialMonitor) -> None:

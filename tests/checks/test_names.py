@@ -50,8 +50,13 @@ def test_a_name_of_the_old_dialect_is_found(tmp_path: Path, source: str) -> None
 
 @pytest.mark.parametrize("name", ["_told", "set_point_wanted", "WANTED"])
 def test_a_part_of_a_name_counts(tmp_path: Path, name: str) -> None:
-    write_module(tmp_path, "robot_runtime/one.py", f"{name} = 1")
+    write_module(tmp_path, "tests/one.py", f"{name} = 1")
     assert len(find_bad_names(tmp_path)) == 1
+
+
+def test_the_name_of_a_test_is_a_sentence(tmp_path: Path) -> None:
+    write_module(tmp_path, "tests/test_one.py", "def test_a_mission_is_kept(): ...")
+    assert find_bad_names(tmp_path) == []
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ def tune(robot: CompiledRobot, name: str, value: float) -> float:
     return answers[0].value
 
 
-def wanted_swing(packets: list[Packet]) -> float:
+def set_swing(packets: list[Packet]) -> float:
     """Commanded swing of the first fin, rad, peak to peak."""
     set_points = [packet.wanted[0] for packet in packets if isinstance(packet, Motor)]
     return max(set_points) - min(set_points)
@@ -116,7 +116,7 @@ def test_amplitude_is_that_of_full_command(robot: CompiledRobot) -> None:
     robot.swim(500, navigation(x=1))
     robot.received.clear()
     robot.swim(1600, navigation(x=1))
-    assert wanted_swing(robot.received) == pytest.approx(0.4, abs=0.02)
+    assert set_swing(robot.received) == pytest.approx(0.4, abs=0.02)
 
 
 def strokes(robot: CompiledRobot, milliseconds: int) -> int:

@@ -107,12 +107,12 @@ def test_assignments_go_to_a_file_and_come_back(shown: Page, tmp_path: Path) -> 
     with page.expect_download() as download:
         page.get_by_role("button", name="Export").click()
     assert download.value.suggested_filename == "gamepad-test-pad.json"
-    kept = json.loads(Path(download.value.path()).read_text())
-    kept["motions"][0]["stick"]["dead"] = 0.4
+    saved = json.loads(Path(download.value.path()).read_text())
+    saved["motions"][0]["stick"]["dead"] = 0.4
     chooser = page.get_by_label("File with the assignments of a gamepad")
     good, bad = tmp_path / "good.json", tmp_path / "bad.json"
-    good.write_text(json.dumps(kept))
-    bad.write_text(json.dumps({**kept, "version": 9}))
+    good.write_text(json.dumps(saved))
+    bad.write_text(json.dumps({**saved, "version": 9}))
     chooser.set_input_files(bad)
     expect(page.get_by_role("alert").filter(has_text="bad.json: from another version")).to_be_visible()
     chooser.set_input_files(good)

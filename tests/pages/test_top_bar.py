@@ -100,8 +100,8 @@ class ChangedState:
         socket.connect_to_server().on_message(hand_on)
 
     def _change_report(self, message: str) -> str:
-        told = json.loads(message)
-        return json.dumps(told | self.health) if told.get("type") == "health" else message
+        report = json.loads(message)
+        return json.dumps(report | self.health) if report.get("type") == "health" else message
 
     def _change_blocks(self, message: bytes) -> bytes:
         changed = b""
@@ -117,12 +117,12 @@ class ChangedState:
 def without_framing_rules(route: Route) -> None:
     """Answer with a page that may stand in a frame: a script changes its width faster than a window's."""
     answer = route.fetch()
-    kept = {
+    remaining = {
         name: value
         for name, value in answer.headers.items()
         if name not in ("content-security-policy", "x-frame-options")
     }
-    route.fulfill(response=answer, headers=kept)
+    route.fulfill(response=answer, headers=remaining)
 
 
 def in_a_frame(page: Page, site: DiveSite, address: str = "/#/people") -> ChangedState:

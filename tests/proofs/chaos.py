@@ -207,14 +207,14 @@ class Storm:
         # Storing may go on for a while, in the room that the write-ahead log has on the disk already: so
         # `store_failing` need not come. That it comes where the database refuses is in test_alarms.py, and
         # what a full disk does to a recording in test_full_disk.py.
-        wait_for(lambda: self._is_told("disk_low"), "the alarm of the full disk")
+        wait_for(lambda: self._is_reported("disk_low"), "the alarm of the full disk")
         time.sleep(self._chance.uniform(0.0, 4.0))
         ballast.unlink()
-        wait_for(lambda: not self._is_told("disk_low"), "room on the disk")
-        wait_for(lambda: not self._is_told("store_failing"), "the database to store again")
+        wait_for(lambda: not self._is_reported("disk_low"), "room on the disk")
+        wait_for(lambda: not self._is_reported("store_failing"), "the database to store again")
         return "disk full"
 
-    def _is_told(self, fault: str) -> bool:
+    def _is_reported(self, fault: str) -> bool:
         return any(alarm["fault"] == fault and alarm["active"] for alarm in self._world.viewer.alarms)
 
     # In between
@@ -253,7 +253,7 @@ class Storm:
     def _count(self, session: int) -> None:
         report, done = self.report, self.report.done
         for page, name in zip(self._pages, ("slow 1", "slow 2"), strict=False):
-            missing, reports = page.missing.total(), page.told.total()
+            missing, reports = page.missing.total(), page.received.total()
             report.pages[name] = [missing, reports]
             self._insist(missing == reports, f"{name}: {missing} rows missing, {reports} told")
         for name, weights in self._memory.values():

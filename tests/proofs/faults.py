@@ -57,7 +57,7 @@ class FaultySwim(Flight):
     def __init__(self, elf: str = "robot", more: str = "") -> None:
         self.moved = self.powered = self.switched_on = -inf
         """s; when the fins moved last, when the motors had power last, and when they got it."""
-        self._felt = 0
+        self._readings = 0
         self._motion = WatchedMotions()
         path = firmware_path(BUILD, LinkConfig().baud, ".elf").with_name(f"{elf}.elf")
         super().__init__(partial(self._make, path), more)
@@ -88,8 +88,8 @@ class FaultySwim(Flight):
 
     def _make(self, path: Path, water: Water) -> SteppedBoard:
         def feel(fins: FinMotion) -> Reading:
-            self._felt += 1
-            now = self._felt * PERIOD - PRELUDE
+            self._readings += 1
+            now = self._readings * PERIOD - PRELUDE
             if self._motion.see(now, fins):
                 self.moved = now
             if fins.powered:

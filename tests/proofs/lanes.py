@@ -15,7 +15,7 @@ from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.missions.library import shipped_missions
 from tests.proofs.pool import processes
-from tests.runtime.experiments.scenario.staging import Told
+from tests.runtime.experiments.scenario.staging import Output
 from tests.runtime.missions.water import end_of
 
 LANES = ("2", "4", "6")
@@ -69,14 +69,14 @@ def survey(seed: int, craft_error: float = 0.0) -> LaneSurvey:
         damping_linear=_scale(craft.damping_linear, damping),
         damping_quadratic=_scale(craft.damping_quadratic, damping),
     )
-    told = Told()
-    run = ScenarioRun(replace(scenario, robot=hull), boards()["host"], told)
-    told.on_event = lambda _: run.cancel() if _has_ended(told) else None
+    output = Output()
+    run = ScenarioRun(replace(scenario, robot=hull), boards()["host"], output)
+    output.on_event = lambda _: run.cancel() if _has_ended(output) else None
     run.perform(lambda _: {})
-    assert end_of(told)["phase"] == "succeeded", end_of(told)["text"]
-    tracks = [(time, track) for time, track in told.rows["track"] if isinstance(track, Track)]
-    points = _find_points(told, tracks[0][0])
-    return LaneSurvey(_measure_spacings(told, points), _compare(tracks, points))
+    assert end_of(output)["phase"] == "succeeded", end_of(output)["text"]
+    tracks = [(time, track) for time, track in output.rows["track"] if isinstance(track, Track)]
+    points = _find_points(output, tracks[0][0])
+    return LaneSurvey(_measure_spacings(output, points), _compare(tracks, points))
 
 
 def _scale(values: Six, factor: float) -> Six:
@@ -84,16 +84,16 @@ def _scale(values: Six, factor: float) -> Six:
     return a, b, c, d, e, f
 
 
-def _has_ended(told: Told) -> bool:
-    missions = told.documents.get("mission")
+def _has_ended(output: Output) -> bool:
+    missions = output.documents.get("mission")
     return missions is not None and missions[-1]["phase"] not in ("running", "paused")
 
 
-def _find_points(told: Told, start: float) -> list[TruePoint]:
+def _find_points(output: Output, start: float) -> list[TruePoint]:
     """Return the true way from `start` (s) on, in the axes of the robot's own heading at that time."""
-    truths = [(time, truth) for time, truth in told.rows["truth"] if isinstance(truth, Truth)]
+    truths = [(time, truth) for time, truth in output.rows["truth"] if isinstance(truth, Truth)]
     first = next(truth for time, truth in truths if time >= start)
-    own = next(imu for time, imu in told.rows["imu"] if time >= start)
+    own = next(imu for time, imu in output.rows["imu"] if time >= start)
     turn = remainder(euler_angles(own.attitude)[0] - euler_angles(first.attitude)[0], 2 * pi)
     points = []
     for time, truth in truths:
@@ -104,13 +104,13 @@ def _find_points(told: Told, start: float) -> list[TruePoint]:
     return points
 
 
-def _measure_spacings(told: Told, points: list[TruePoint]) -> list[float]:
+def _measure_spacings(output: Output, points: list[TruePoint]) -> list[float]:
     """Return the true distances, m, between the middles of neighbouring lanes."""
     middles = []
     for lane in LANES:
         times = [
             document["time"]
-            for document in told.documents["mission"]
+            for document in output.documents["mission"]
             for step in document["steps"]
             if step["path"] == lane and step["status"] == "running"
         ]

@@ -30,7 +30,7 @@ from tests.proofs.lanes import prove_lanes
 from tests.proofs.pool import processes
 from tests.proofs.watching import WatchedMotions
 from tests.runtime.control.flight import Flight
-from tests.runtime.experiments.scenario.staging import Told
+from tests.runtime.experiments.scenario.staging import Output
 from tests.runtime.missions.random_missions import STEPS, check_random_mission, write
 from tests.runtime.missions.water import mission
 
@@ -85,7 +85,7 @@ class MissionSwim(Flight):
     def __init__(self, board: str = "host") -> None:
         self.moved = self.powered = -inf
         """s; when the fins moved last, and when the motors had power last."""
-        self._felt = 0
+        self._readings = 0
         self._motion = WatchedMotions()
         self.missions: list[Mission] = []
         super().__init__(partial(self._make, board))
@@ -136,7 +136,7 @@ class MissionSwim(Flight):
         self.supervisor = self.robot.supervisor
         self.robot.link.attach(stage.board.write)
         self.robot.bus.on_document(MISSION, self._see_mission)
-        self._performance = _RunLoop(stage, Told(), lambda: False)
+        self._performance = _RunLoop(stage, Output(), lambda: False)
 
     def _see_mission(self, document: object) -> None:
         assert isinstance(document, Mission)
@@ -144,8 +144,8 @@ class MissionSwim(Flight):
 
     def _make(self, board: str, water: Water) -> SteppedBoard:
         def feel(fins: FinMotion) -> Reading:
-            self._felt += 1
-            now = self._felt * PERIOD - PRELUDE
+            self._readings += 1
+            now = self._readings * PERIOD - PRELUDE
             if self._motion.see(now, fins):
                 self.moved = now
             if fins.powered:

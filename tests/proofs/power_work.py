@@ -53,7 +53,7 @@ class Work:
     def __init__(self, settings: Settings, log: Path) -> None:
         self.settings = settings
         self._log = log
-        self._told: dict[str, Any] = {}
+        self._facts: dict[str, Any] = {}
         self._chance = random.Random(1)
         self._first = 0
 
@@ -61,16 +61,16 @@ class Work:
         """Record that all stored facts are acknowledged."""
         facts = read_facts(self.settings.data.database, "ro")
         changed: dict[str, list[Any] | None] = {
-            name: [value] for name, value in facts.items() if self._told.get(name) != value
+            name: [value] for name, value in facts.items() if self._facts.get(name) != value
         }
-        changed |= {name: None for name in self._told if name not in facts}
+        changed |= {name: None for name in self._facts if name not in facts}
         note(self._log, changed)
-        self._told = facts
+        self._facts = facts
 
     def doubtful(self, prefix: str) -> None:
         """Record that facts with this prefix are about to change: old and new values are right."""
-        note(self._log, {name: None for name in self._told if name.startswith(prefix)})
-        self._told = {name: value for name, value in self._told.items() if not name.startswith(prefix)}
+        note(self._log, {name: None for name in self._facts if name.startswith(prefix)})
+        self._facts = {name: value for name, value in self._facts.items() if not name.startswith(prefix)}
 
     def file(self, path: Path, *older: str) -> str:
         """Record that a file is acknowledged; `older` are checksums of permitted older content."""

@@ -28,7 +28,7 @@ class SlowPage:
     """Reads slowly; if `stalled` not at all. Reconnects whenever it is disconnected."""
 
     def __init__(self, stack: Stack, *, stalled: bool) -> None:
-        self.told: Counter[str] = Counter()
+        self.received: Counter[str] = Counter()
         """Samples that the server said it left out, by topic, ..."""
         self.missing: Counter[str] = Counter()
         """... and those that the numbers show to be missing."""
@@ -91,6 +91,6 @@ class SlowPage:
             # A smaller number: the sender was restarted, and losses are not known.
             if target is not None and block.first >= target:
                 self.missing[name] += block.first - target
-                self.told[name] += pending[name]
+                self.received[name] += pending[name]
             del pending[name]
             expected[name] = block.following

@@ -387,8 +387,8 @@ def test_vision_settings_survive_a_restart_of_the_runtime(tmp_path: Path) -> Non
     second.ask("vision_settings", **replace(usual, turn=90, gain=2.0, confirmation=(3, 4)).table())
     older = {name: value for name, value in changed.table().items() if name not in SINCE_0_2}
     second.ask("vision_settings", **older)
-    kept = replace(changed, turn=90, gain=2.0, confirmation=(3, 4))
-    assert second.query("query/vision")["settings"] == kept.table()
+    stored = replace(changed, turn=90, gain=2.0, confirmation=(3, 4))
+    assert second.query("query/vision")["settings"] == stored.table()
     second.ask("vision_settings", **usual.table())
     assert not (tmp_path / "vision.json").exists()
     second.close()

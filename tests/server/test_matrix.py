@@ -412,7 +412,7 @@ class LiveSocket:
 
     def __init__(self) -> None:
         self.opened: bool | None = None
-        self.told: list[dict[str, Any]] = []
+        self.received: list[dict[str, Any]] = []
         self.to_server: asyncio.Queue[Message] = asyncio.Queue()
         self.to_server.put_nowait({"type": "websocket.connect"})
 
@@ -425,23 +425,23 @@ class LiveSocket:
         if message["type"] in ("websocket.accept", "websocket.close"):
             self.opened = self.opened or message["type"] == "websocket.accept"
         elif (text := message.get("text")) is not None:
-            self.told.append(json.loads(text))
+            self.received.append(json.loads(text))
 
     async def hello(self) -> dict[str, Any]:
         """Return the greeting."""
-        await until(lambda: self.told, "the greeting")
-        return self.told[0]
+        await until(lambda: self.received, "the greeting")
+        return self.received[0]
 
     async def say(self, message: dict[str, Any]) -> list[str]:
         """Send a message; return the errors in answer."""
-        before = len(self.told)
+        before = len(self.received)
         for sent in (message, {"op": "ping", "id": before}):
             self.to_server.put_nowait({"type": "websocket.receive", "text": json.dumps(sent)})
         await until(
-            lambda: any(message["op"] == "pong" and message["id"] == before for message in self.told),
+            lambda: any(message["op"] == "pong" and message["id"] == before for message in self.received),
             "the answer to a ping",
         )
-        return [message["text"] for message in self.told[before:] if message["op"] == "error"]
+        return [message["text"] for message in self.received[before:] if message["op"] == "error"]
 
 
 @asynccontextmanager

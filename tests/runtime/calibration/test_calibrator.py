@@ -25,12 +25,12 @@ class CalibratorRig:
 
     def __init__(self) -> None:
         self.clock = SimulatedClock()
-        self.kept: Calibration = EMULATED.packet()
+        self.record: Calibration = EMULATED.packet()
         self.connected, self.silent, self.worn, self.armed = True, False, False, False
         self.late: Calibration | None = None
         """An answer that is still on the line, before the next one."""
         self.sent: list[Packet] = []
-        self.told: list[str] = []
+        self.texts: list[str] = []
         self.heard = threading.Event()
         self.published: list[CalibrationKept] = []
         self.calibrator = Calibrator(
@@ -48,10 +48,10 @@ class CalibratorRig:
         self.sent += packets
         for packet in packets:
             if isinstance(packet, Calibration) and not self.worn:
-                self.kept = packet
+                self.record = packet
             if isinstance(packet, Calibration | RequestCalibration) and not self.silent:
                 # In the link's own thread, as the answer of a board.
-                threading.Thread(target=self._answer, args=(self.late, self.kept)).start()
+                threading.Thread(target=self._answer, args=(self.late, self.record)).start()
         return True
 
     def _answer(self, late: Calibration | None, stored: Calibration) -> None:
@@ -61,14 +61,14 @@ class CalibratorRig:
         self.calibrator.board.see(stored)
 
     def _hear(self, text: str, severity: Severity) -> None:
-        self.told.append(f"{severity}: {text}")
+        self.texts.append(f"{severity}: {text}")
         self.heard.set()
 
     def measure(self) -> str:
         """Measure the gyroscope; return what is told of it."""
         self.calibrator.measure_gyro()
         assert self.heard.wait(SECONDS)
-        return self.told[-1]
+        return self.texts[-1]
 
     def ask(self) -> None:
         self.calibrator.board.tick()
@@ -100,7 +100,7 @@ def test_a_silent_board_is_asked_once_a_second(rig: CalibratorRig) -> None:
 
 def test_another_board_is_asked_again(rig: CalibratorRig) -> None:
     rig.ask()
-    rig.kept = replace(EMULATED, done=()).packet()
+    rig.record = replace(EMULATED, done=()).packet()
     rig.calibrator.board.forget()
     assert rig.calibrator.board.values is None
     rig.ask()
@@ -109,7 +109,7 @@ def test_another_board_is_asked_again(rig: CalibratorRig) -> None:
 
 
 def test_impossible_axes_of_a_board_are_named(rig: CalibratorRig) -> None:
-    rig.kept = replace(EMULATED.packet(), axes=(0, 1, 2))
+    rig.record = replace(EMULATED.packet(), axes=(0, 1, 2))
     rig.ask()
     assert "impossible axes" in rig.calibrator.board.refusals()[0]
 
@@ -167,7 +167,7 @@ def readings(
 
 def test_the_gyroscopes_offset_is_added_to_what_the_board_took_away(rig: CalibratorRig) -> None:
     before = (radians(1), radians(-2), 0.0)
-    rig.kept = replace(EMULATED, gyro_bias=before, done=("fins",)).packet()
+    rig.record = replace(EMULATED, gyro_bias=before, done=("fins",)).packet()
     rig.ask()
     with readings(rig, lambda _: (radians(0.5), radians(0.8), radians(20))):
         report = rig.measure()
@@ -219,7 +219,7 @@ def test_what_was_stored_while_the_gyroscope_was_measured_stays(rig: CalibratorR
         rig.calibrator.measure_gyro()
         begun.set()
         assert rig.heard.wait(SECONDS)
-    assert "was changed meanwhile" in rig.told[-1]
+    assert "was changed meanwhile" in rig.texts[-1]
     assert rig.calibrator.board.values == meanwhile
 
 
@@ -228,7 +228,7 @@ def test_an_answer_from_before_is_not_taken_for_that_to_what_is_stored(rig: Cali
     rig.calibrator.board.forget()
     rig.silent = True
     rig.calibrator.board.tick()
-    rig.silent, rig.late = False, rig.kept
+    rig.silent, rig.late = False, rig.record
     values = replace(EMULATED, fin_zeros=(1, 2, 3, 4))
     rig.calibrator.store(values)
     assert rig.calibrator.board.values == values

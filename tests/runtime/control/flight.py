@@ -16,7 +16,7 @@ from robot_runtime.experiments.scenario.run import PRELUDE, _RunLoop
 from robot_runtime.link.serial_link import HEARTBEAT_EARLY
 from robot_runtime.periodic_task import SAME_TIME
 from robot_runtime.simulation.water.requests import changes
-from tests.runtime.experiments.scenario.staging import Told, document
+from tests.runtime.experiments.scenario.staging import Output, document
 
 STEP = 0.02
 """s, in which what the test does between two looks falls."""
@@ -28,7 +28,7 @@ class _StepLoop(_RunLoop):
     """The loop of a robot that hears its board in step with control."""
 
     def __init__(self, rig: ScenarioRig) -> None:
-        super().__init__(rig, Told(), lambda: False)
+        super().__init__(rig, Output(), lambda: False)
         self._step = ControlStep(rig.robot, self._receive)
         self._tasks.clear()
 
@@ -71,7 +71,9 @@ class Flight:
         self._sequence = 0
         self._commands = Commands(self.robot).do
         self._water = changes(self.stage.simulator)
-        self._performance = _StepLoop(self.stage) if in_step else _RunLoop(self.stage, Told(), lambda: False)
+        self._performance = (
+            _StepLoop(self.stage) if in_step else _RunLoop(self.stage, Output(), lambda: False)
+        )
         self.robot.bus.on_document(EVENT, self._hear)
         self.robot.bus.on_row(
             NAVIGATION, lambda time, record: self.sent.append((time, Navigation.from_bytes(record)))

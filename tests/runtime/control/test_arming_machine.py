@@ -196,7 +196,7 @@ class ArmingMachine(RuleBasedStateMachine):
         assert (self.supervisor.armed_since is not None) == self.supervisor.armed
 
     @invariant()
-    def limits_are_kept(self) -> None:
+    def limits_hold(self) -> None:
         """No state that steers outlasts the limits of its inputs."""
         mode = self.supervisor.mode
         if mode == "automatic":

@@ -50,7 +50,7 @@ class Lab:
 
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
-        self.told: list[Experiment] = []
+        self.published: list[Experiment] = []
         self.set_points: list[float] = []
         """The depth's, as the newest state has it at each word of the experiment."""
         self._state: State | None = None
@@ -61,15 +61,15 @@ class Lab:
         begin(self.flight, request)
 
     def until_over(self, limit: float) -> Experiment:
-        self.flight.until(lambda: bool(self.told) and self.told[-1].phase in OVER, limit)
-        return self.told[-1]
+        self.flight.until(lambda: bool(self.published) and self.published[-1].phase in OVER, limit)
+        return self.published[-1]
 
     def phases(self) -> list[str]:
-        return list(dict.fromkeys(document.phase for document in self.told))
+        return list(dict.fromkeys(document.phase for document in self.published))
 
     def _hear(self, document: object) -> None:
         assert isinstance(document, Experiment)
-        self.told.append(document)
+        self.published.append(document)
         assert self._state is not None
         self.set_points.append(self._state.loops[0].set_point)
 
@@ -89,9 +89,9 @@ def test_a_step_begins_once_settled_and_restores_everything() -> None:
         end = lab.until_over(30.0)
         assert (end.number, end.kind, end.loop, end.phase, end.text) == (3, "step", "depth", "complete", "")
         assert lab.phases() == ["settling", "running", "complete"]
-        began = next(document.since for document in lab.told if document.phase == "running")
+        began = next(document.since for document in lab.published if document.phase == "running")
         assert end.since - began == pytest.approx(6.0, abs=0.11)
-        progress = [document.progress for document in lab.told]
+        progress = [document.progress for document in lab.published]
         assert progress == sorted(progress)
         assert lab.set_points[-2:] == [STEP["target"], 0.6]
         flight.run(0.2)
@@ -184,7 +184,7 @@ def test_any_end_of_steering_ends_the_experiment(end: Any, phase: str, text: str
         assert over.phase == phase
         assert text in over.text
         flight.run(0.5)
-        assert lab.told[-1] is over
+        assert lab.published[-1] is over
 
 
 def test_it_ends_beyond_its_limits() -> None:

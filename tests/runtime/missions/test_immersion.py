@@ -6,7 +6,7 @@ from robot_runtime.control.node import Course
 from robot_runtime.missions.document import read_mission
 from robot_runtime.missions.leaves.waiting import WET_FOR
 from robot_runtime.missions.library import shipped_missions
-from tests.runtime.experiments.scenario.staging import Told
+from tests.runtime.experiments.scenario.staging import Output
 from tests.runtime.missions.mission_rig import MissionRig
 from tests.runtime.missions.test_documents import problems
 from tests.runtime.missions.water import DIVE, HOLD, end_of, is_at_rest, mission, statuses, swim
@@ -17,12 +17,12 @@ LET_GO = 'at = 12; do = "trim"; buoyancy = 1.003; forward = 0.0; right = 0.0; ab
 """A hand that pushes it under, and lets it go."""
 
 
-def drives(report: Told, start: float, end: float) -> set[int]:
+def drives(report: Output, start: float, end: float) -> set[int]:
     """Return the drives that the fins had."""
     return {drive for motor in report.between("motor", start, end) for drive in motor.drive}
 
 
-def commands(report: Told, start: float, end: float) -> set[tuple[float, ...]]:
+def commands(report: Output, start: float, end: float) -> set[tuple[float, ...]]:
     """Return the commands that the board was sent."""
     sent = report.between("navigation", start, end)
     return {(row.x, row.y, row.z, row.roll, row.pitch, row.yaw) for row in sent}

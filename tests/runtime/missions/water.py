@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from tests.runtime.experiments.scenario.staging import Told, document, perform
+from tests.runtime.experiments.scenario.staging import Output, document, perform
 
 HEAD = 'format = 1\nname = "test"\nalone = 0\npause = 20\n'
 DIVE = "{ do = 'dive', depth = 0.6, timeout = 30 }"
@@ -24,12 +24,14 @@ def begin(text: str, at: float = 1.0) -> str:
     )
 
 
-def swim(seconds: float, text: str, *events: str, seed: int = 7, more: str = "", board: str = "host") -> Told:
+def swim(
+    seconds: float, text: str, *events: str, seed: int = 7, more: str = "", board: str = "host"
+) -> Output:
     """Perform a scenario with a mission that begins after a second."""
     return perform(document(seconds, begin(text), *events, seed=seed, more=more), board)
 
 
-def end_of(report: Told) -> dict[str, Any]:
+def end_of(report: Output) -> dict[str, Any]:
     """Return the document of the mission's end; one more may follow when the robot has surfaced."""
     documents = report.documents["mission"]
     return next(
@@ -44,7 +46,7 @@ def statuses(document: dict[str, Any]) -> dict[str, str]:
     return {step["path"]: step["status"] for step in document["steps"]}
 
 
-def is_at_rest(report: Told, since: float) -> bool:
+def is_at_rest(report: Output, since: float) -> bool:
     """Return True if the board was told nothing but rest, and its fins stopped."""
     late = report.between("navigation", since, 1e9)
     last = report.rows["motor"][-1][1]

@@ -121,8 +121,8 @@ def test_a_segment_of_each_session_has_the_figures_of_its_part(
 ) -> None:
     # It begins armed, 3 s before the second step: its first segment is the end of a longer one.
     late = record(store, settings, dive(begin=STEPPED - 3.0), name="late", started=STEPPED - 3.5)
-    wanted = {"over": "segment", "segments": [{"session": session, "segment": 2}]}
-    chosen = compare(store, session, late, align={"by": "segment"}, **wanted)
+    query = {"over": "segment", "segments": [{"session": session, "segment": 2}]}
+    chosen = compare(store, session, late, align={"by": "segment"}, **query)
     whole, tail = chosen.sessions
     assert [len(item.segments) for item in chosen.sessions] == [2, 2]
     assert (whole.segment, tail.segment) == (2, 2)

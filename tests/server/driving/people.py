@@ -18,12 +18,12 @@ class ArbiterRig:
 
     def __init__(self) -> None:
         self.clock = SimulatedClock(1000.0)
-        self.told: list[dict[str, Any]] = []
+        self.messages: list[dict[str, Any]] = []
         self.driven: list[dict[str, Any]] = []
         self.noted: list[str] = []
         self.lost: list[tuple[str, str]] = []
         self.arbiter = ControlArbiter(
-            self.clock, self.told.append, self._drive, self.noted.append, self._lose
+            self.clock, self.messages.append, self._drive, self.noted.append, self._lose
         )
 
     def _drive(self, data: bytes) -> None:

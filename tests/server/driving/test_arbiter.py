@@ -24,14 +24,14 @@ def test_every_client_is_notified_of_every_change() -> None:
     with arbiter.page(ANNA) as anna, arbiter.page(BEN) as ben:
         arbiter.take(anna)
         first = {"op": "control", "epoch": 1_000_001, "holder": {"client": anna.number, "name": "Anna"}}
-        assert seen.told[-1] == first
+        assert seen.messages[-1] == first
         arbiter.take(ben, over=True)
         theirs = {"client": ben.number, "name": "Ben"}
-        assert seen.told[-1] == first | {"epoch": 1_000_002, "holder": theirs}
+        assert seen.messages[-1] == first | {"epoch": 1_000_002, "holder": theirs}
         arbiter.release(ben)
-        assert seen.told[-1] == first | {"epoch": 1_000_003, "holder": None}
+        assert seen.messages[-1] == first | {"epoch": 1_000_003, "holder": None}
         arbiter.take(anna)
-    assert seen.told[-1] == first | {"epoch": 1_000_005, "holder": None}
+    assert seen.messages[-1] == first | {"epoch": 1_000_005, "holder": None}
     seen.clock.forward(RELOAD_SECONDS)
     arbiter.expire()
     assert seen.noted == [
@@ -50,11 +50,11 @@ def test_a_reloaded_page_has_control_again_without_an_entry() -> None:
         arbiter.take(anna)
         held = arbiter.lease.epoch
     # Its sticks count no longer from the moment when it closes.
-    assert (seen.told[-1]["holder"], arbiter.lease.epoch) == (None, held + 1)
+    assert (seen.messages[-1]["holder"], arbiter.lease.epoch) == (None, held + 1)
     seen.clock.forward(RELOAD_SECONDS - 0.1)
     with arbiter.page(ANNA) as anna:
         arbiter.take(anna)
-        assert seen.told[-1]["holder"] == {"client": anna.number, "name": "Anna"}
+        assert seen.messages[-1]["holder"] == {"client": anna.number, "name": "Anna"}
         seen.clock.forward(RELOAD_SECONDS)
         arbiter.expire()
         assert seen.noted == ["“Anna” took control."]
@@ -114,7 +114,7 @@ def test_a_restarted_server_continues_above_the_last_epoch() -> None:
             seen.arbiter.take(anna)
             seen.arbiter.release(anna)
     seen.clock.forward(1.5)
-    fresh = ControlArbiter(seen.clock, seen.told.append, print, print, print)
+    fresh = ControlArbiter(seen.clock, seen.messages.append, print, print, print)
     assert fresh.lease.epoch > seen.arbiter.lease.epoch
 
 
@@ -191,7 +191,7 @@ def test_signing_out_or_becoming_a_viewer_ends_clients_and_control() -> None:
     with arbiter.page(ANNA) as anna, arbiter.page(ANNA) as other, arbiter.page(BEN) as ben:
         arbiter.take(anna)
         arbiter.dismiss(ANNA.device)
-        assert seen.told[-1]["holder"] is None
+        assert seen.messages[-1]["holder"] is None
         assert arbiter.clients.find(ANNA, anna.key) is None
         # Its sockets may live for a moment longer.
         for client in (anna, other):

@@ -107,7 +107,7 @@ class Contest(RuleBasedStateMachine):
     @rule(client=clients)
     def drive(self, client: ControlClient) -> None:
         before = len(self.seen.driven)
-        self.arbiter.drive(client, self.seen.drive(sequence=len(self.seen.told)))
+        self.arbiter.drive(client, self.seen.drive(sequence=len(self.seen.messages)))
         if len(self.seen.driven) > before:
             assert self.arbiter.lease.holder == client.number
 

@@ -34,8 +34,8 @@ class AlarmRig(MonitorRig):
 
     def __init__(self, settings: Settings, store: Store) -> None:
         super().__init__(settings, store, *DOWN)
-        self.told: list[Event] = []
-        self.alarms = Alarms(self.clock, SERVER_FAULTS, self.told.append)
+        self.events: list[Event] = []
+        self.alarms = Alarms(self.clock, SERVER_FAULTS, self.events.append)
         self.watchdog = Watchdog(
             settings,
             self.clock,
@@ -73,7 +73,7 @@ def rig(settings: Settings, store: Store) -> AlarmRig:
 
 def test_all_is_well(rig: AlarmRig) -> None:
     rig.spend(5.0, all=rig.receive)
-    assert (rig.alarms.listed(), rig.told) == ([], [])
+    assert (rig.alarms.listed(), rig.events) == ([], [])
 
 
 def test_a_silent_process_is_an_alarm_until_it_sends_again(rig: AlarmRig) -> None:
@@ -87,7 +87,7 @@ def test_a_silent_process_is_an_alarm_until_it_sends_again(rig: AlarmRig) -> Non
     alarm = rig.find("runtime_silent")
     assert alarm is not None
     assert (alarm.active, alarm.acknowledged) == (False, False)
-    assert [(event.kind, event.severity) for event in rig.told] == [
+    assert [(event.kind, event.severity) for event in rig.events] == [
         ("runtime_silent", "alarm"),
         ("simulator_silent", "caution"),
         ("alarm_over", "info"),
@@ -143,7 +143,7 @@ def test_after_a_stall_of_the_server_other_processes_are_not_blamed(rig: AlarmRi
     rig.watchdog.check_once()
     assert rig.active() == set()
     rig.spend(1.0, all=rig.receive)
-    assert rig.told == []
+    assert rig.events == []
 
 
 def test_only_a_silent_runtime_is_killed_and_only_once(

@@ -33,7 +33,7 @@ class Pi:
         self.store = store
         self.settings = settings
         self.clock = SimulatedClock(1000.0)
-        self.told: list[str] = []
+        self.notice_texts: list[str] = []
         self.changes: list[Session | None] = []
         """The recording session at each of its changes."""
         self.synchronised, self.suspended = False, False
@@ -52,7 +52,7 @@ class Pi:
         self.changes.append(self.recorder.session)
 
     def _hear(self, block: Block) -> None:
-        self.told += [
+        self.notice_texts += [
             document["text"] for document in json.loads(block.payload) if document["kind"] == "clock"
         ]
 
@@ -103,19 +103,19 @@ async def test_a_session_of_1970_has_its_right_date_once_the_clock_is_set(pi: Pi
     mark = {"session_id": session, "time": 1005.0, "text": "here", "made": OLD + 5.0}
     await pi.store.write(lambda connection: insert_row(connection, BookmarkRow, mark))
     await pi.look(OLD - 1000.0)
-    assert (pi.row(session).started, pi.told) == (OLD, [])
+    assert (pi.row(session).started, pi.notice_texts) == (OLD, [])
     await pi.look()
     row = pi.row(session)
     assert (row.started, row.ended) == (RIGHT, RIGHT + 10.0)
     assert row.name == "Armed 2030-03-17 17:46 UTC"
     with pi.store.read() as database:
         assert database.exec(select(BookmarkRow.made)).one() == RIGHT + 5.0
-    assert pi.told == [
+    assert pi.notice_texts == [
         "The computer's clock was set: 1 session has its right date now "
         "(1970-01-01 00:08 was 2030-03-17 17:46 UTC)."
     ]
     await pi.look()
-    assert len(pi.told) == 1
+    assert len(pi.notice_texts) == 1
 
 
 async def test_nothing_that_happened_after_the_clock_was_set_gets_a_date_in_the_future(pi: Pi) -> None:
@@ -153,7 +153,7 @@ async def test_a_difference_that_has_another_cause_changes_no_date(pi: Pi, case:
     await pi.look()
     pi.synchronised = True
     await pi.look()
-    assert (pi.row(session).started, pi.told) == (YESTERDAY, [])
+    assert (pi.row(session).started, pi.notice_texts) == (YESTERDAY, [])
 
 
 async def test_the_correction_is_tried_again_where_the_disk_fails(

@@ -44,14 +44,14 @@ class Keeper:
         self.store = store
         self.settings = settings.with_section(rules)
         self.clock = SimulatedClock(50.0)
-        self.told: list[str] = []
+        self.notice_texts: list[str] = []
         self.notices = Notices(self.clock, self._hear)
         self.recorder = Recorder(store, self.clock, self.notices, lambda: None)
         self.catalogue = Catalogue(store, self.recorder)
         self.retention = RetentionWorker(store, self.settings, self.notices, self.clock)
 
     def _hear(self, block: Block) -> None:
-        self.told += [document["text"] for document in json.loads(block.payload)]
+        self.notice_texts += [document["text"] for document in json.loads(block.payload)]
 
     async def record(self, name: str, age: float, chunks: int = 3, *, stop: bool = True) -> int:
         row = new_row(self.settings, self.clock, name, "", "null")
@@ -201,7 +201,7 @@ async def test_old_sessions_are_binned_except_protected_tagged_or_recording_ones
     await keeper.retention.apply(NOW)
     assert keeper.names() == ["records", "young", "tagged", "kept"]
     assert keeper.names(deleted=True) == ["old"]
-    assert [text for text in keeper.told if text.startswith("Older")] == [
+    assert [text for text in keeper.notice_texts if text.startswith("Older")] == [
         "Older than 30 days: “old” went into the bin. To keep one, restore it and mark it as kept."
     ]
 
@@ -237,7 +237,7 @@ async def test_on_a_nearly_full_disk_the_oldest_are_binned_and_purged_after_an_h
     for _ in range(2):
         await keeper.retention.apply(NOW + 2 * BIN_SECONDS)
     assert len(keeper.names()) == 2
-    assert len([text for text in keeper.told if "Disk space is short" in text]) == 1
+    assert len([text for text in keeper.notice_texts if "Disk space is short" in text]) == 1
 
 
 async def test_where_space_is_short_the_oldest_films_go_before_any_session(
@@ -267,7 +267,7 @@ async def test_where_space_is_short_the_oldest_films_go_before_any_session(
         now = keeper.catalogue.find(number)
         assert now.samples == sum(counts.values())
         assert row.bytes - now.bytes == pytest.approx(1_000_000 if number in (2, 3) else 0, abs=2000)
-    assert [text for text in keeper.told if "film" in text] == [
+    assert [text for text in keeper.notice_texts if "film" in text] == [
         "Less than 1 GB of the disk are free: the film of “oldest”, “older” was removed; the samples remain. "
         "To keep a film, mark its session as kept."
     ]

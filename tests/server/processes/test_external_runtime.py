@@ -83,7 +83,7 @@ async def test_a_server_watches_it_and_leaves_it_running(tmp_path: Path) -> None
             await until(lambda: crew.part("engine").state == "running", "running")
             assert crew.part("engine").pid == first.pid
         assert first.poll() is None
-        assert crew.told == []
+        assert crew.changes == []
 
 
 async def test_its_death_is_reported_and_the_next_one_watched(tmp_path: Path) -> None:
@@ -98,8 +98,8 @@ async def test_its_death_is_reported_and_the_next_one_watched(tmp_path: Path) ->
         with engine(tmp_path) as second:
             await until(lambda: crew.part("engine").state == "running", "running")
             assert crew.part("engine").pid == second.pid
-        assert [name for name, _ in crew.told][:1] == ["engine"]
-        assert crew.told[0][1] == (
+        assert [name for name, _ in crew.changes][:1] == ["engine"]
+        assert crew.changes[0][1] == (
             "The part engine has ended; journalctl -u mucat-runtime says why. systemd starts it again."
         )
 
@@ -118,7 +118,7 @@ async def test_one_that_does_not_come_back_is_reported_with_how_to_start_it(
             await until(lambda: crew.part("engine").problem == ABSENT, "it to be missed")
             with engine(tmp_path):
                 await until(lambda: crew.part("engine").state == "running", "running")
-                assert [text for _, text in crew.told][1:] == [f"The part engine {ABSENT}."]
+                assert [text for _, text in crew.changes][1:] == [f"The part engine {ABSENT}."]
 
 
 @pytest.mark.parametrize("moment", ["before", "after"])
@@ -185,7 +185,7 @@ async def test_where_it_cannot_be_paused_it_is_still_watched(tmp_path: Path) -> 
             database.kill()
             database.wait()
             await until(lambda: crew.part("engine").state == "failed", "failed")
-    assert [name for name, _ in crew.told] == ["engine"]
+    assert [name for name, _ in crew.changes] == ["engine"]
 
 
 def test_it_enters_itself_and_its_number_stays(settings: Settings) -> None:

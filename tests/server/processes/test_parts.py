@@ -27,11 +27,11 @@ class Crew:
     """A supervisor of processes that are small Python programs."""
 
     def __init__(self, folder: Path, *commands: ProcessCommand) -> None:
-        self.told: list[tuple[str, str]] = []
+        self.changes: list[tuple[str, str]] = []
         data = DataFolder(folder)
         make_folders(data)
         self.parts = ProcessSupervisor(
-            commands, data, SteadyClock(), lambda name, text: self.told.append((name, text))
+            commands, data, SteadyClock(), lambda name, text: self.changes.append((name, text))
         )
 
     def part(self, name: str) -> ManagedProcess:
@@ -78,11 +78,11 @@ async def test_a_process_that_dies_is_reported_with_its_last_output_and_restarte
     async with running(crew):
         await until(lambda: count.exists() and count.read_text() == "xxx", "the third start")
         await until(lambda: crew.part("engine").state == "running", "running")
-        assert [kind for kind, _ in crew.told] == ["engine", "engine"]
-        assert "The part engine has ended with exit status 1." in crew.told[0][1]
-        assert "no oil / broken 0" in crew.told[0][1]
-        assert "It is started again at once." in crew.told[0][1]
-        assert "It is started again in 0.0 s." in crew.told[1][1]
+        assert [kind for kind, _ in crew.changes] == ["engine", "engine"]
+        assert "The part engine has ended with exit status 1." in crew.changes[0][1]
+        assert "no oil / broken 0" in crew.changes[0][1]
+        assert "It is started again at once." in crew.changes[0][1]
+        assert "It is started again in 0.0 s." in crew.changes[1][1]
     assert (tmp_path / "logs" / "engine.log").read_text() == "no oil\nbroken 0\nno oil\nbroken 1\n"
 
 
@@ -93,9 +93,9 @@ async def test_a_killed_process_is_reported_with_the_signal_and_replaced(tmp_pat
         await until(lambda: crew.part("engine").pid, "the start")
         first = crew.process("engine")
         first.kill()
-        await until(lambda: crew.told, "the news")
+        await until(lambda: crew.changes, "the news")
         await until(lambda: crew.part("engine").pid not in (None, first.pid), "the next start")
-        assert "was ended by signal SIGKILL" in crew.told[0][1]
+        assert "was ended by signal SIGKILL" in crew.changes[0][1]
 
 
 async def test_a_hung_process_is_killed_reported_and_restarted(tmp_path: Path) -> None:
@@ -107,12 +107,12 @@ async def test_a_hung_process_is_killed_reported_and_restarted(tmp_path: Path) -
         first.suspend()
         crew.part("engine").end_hung("said nothing, and was ended")
         await until(lambda: crew.part("engine").pid not in (None, first.pid), "the next start")
-        assert crew.told == [
+        assert crew.changes == [
             ("engine", "The part engine said nothing, and was ended. It is started again at once.")
         ]
         crew.process("engine").kill()
-        await until(lambda: len(crew.told) > 1, "the news")
-        assert "was ended by signal SIGKILL" in crew.told[1][1]
+        await until(lambda: len(crew.changes) > 1, "the news")
+        assert "was ended by signal SIGKILL" in crew.changes[1][1]
 
 
 @pytest.mark.parametrize(
@@ -154,7 +154,7 @@ async def stop_when_up(folder: Path, code: str) -> str:
         await until(lambda: log.exists() and log.read_text() == "up\n", "it to be up")
         process = crew.process("engine")
     assert not process.is_running()
-    assert crew.told == []
+    assert crew.changes == []
     return log.read_text()
 
 
@@ -180,7 +180,7 @@ async def test_children_of_a_process_end_with_it(tmp_path: Path) -> None:
     async with running(crew):
         await until(lambda: log.exists() and log.read_text().endswith("\n"), "the child")
         crew.process("parent").kill()
-        await until(lambda: crew.told, "the news")
+        await until(lambda: crew.changes, "the news")
         first, *_ = map(int, log.read_text().split())
         await until(lambda: not alive(first), "the child's end")
         await until(lambda: len(log.read_text().split()) == 2, "the next child")
@@ -205,8 +205,8 @@ async def test_a_missing_program_is_reported_and_the_others_run(tmp_path: Path) 
     crew = Crew(tmp_path, missing, program("other", "import time; time.sleep(600)"))
 
     async with running(crew):
-        await until(lambda: crew.told and crew.part("other").state == "running", "both")
-        assert "No such file" in crew.told[0][1]
+        await until(lambda: crew.changes and crew.part("other").state == "running", "both")
+        assert "No such file" in crew.changes[0][1]
         assert crew.part("board").state in ("failed", "waiting")
 
 
@@ -225,7 +225,7 @@ async def test_a_paused_process_does_not_run_until_it_is_resumed(tmp_path: Path)
         assert crew.part("engine").state == "paused"
         crew.parts.resume("engine")
         await until(lambda: crew.part("engine").pid, "the next start")
-        assert crew.told == []
+        assert crew.changes == []
 
 
 class Left:
@@ -258,10 +258,10 @@ async def test_a_process_of_a_killed_server_is_adopted(tmp_path: Path) -> None:
         assert crew.part("engine").since == started
         (tmp_path / "never").touch()
         remaining.process.kill()
-        await until(lambda: crew.told, "the news")
+        await until(lambda: crew.changes, "the news")
         assert (
             "has ended; its exit status is not known, because an earlier server had started it"
-            in crew.told[0][1]
+            in crew.changes[0][1]
         )
         await until(lambda: crew.part("engine").pid not in (None, remaining.process.pid), "the next")
     assert not alive(remaining.process.pid)
@@ -281,7 +281,7 @@ async def test_an_adopted_process_is_terminated_first_and_then_killed(
         await until(lambda: crew.part("deaf").pid == remaining.process.pid, "the adoption")
         await until(up.exists, "it to be deaf")
     assert not alive(remaining.process.pid)
-    assert crew.told == []
+    assert crew.changes == []
 
 
 async def test_a_process_of_another_command_or_other_files_is_replaced(tmp_path: Path) -> None:
@@ -300,7 +300,7 @@ async def test_a_process_of_another_command_or_other_files_is_replaced(tmp_path:
         for server in remaining:
             await until(lambda item=server: not alive(item.process.pid), "the end of the old")  # type: ignore[misc]
         await until(lambda: crew.part("argument").pid and crew.part("file").pid, "the new")
-        assert crew.told == []
+        assert crew.changes == []
 
 
 async def test_a_reused_process_number_is_not_adopted(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ class RecorderRig:
         self.store = store
         self.settings = settings
         self.clock = SimulatedClock(50.0)
-        self.told: list[str] = []
+        self.notice_texts: list[str] = []
         self.changes = 0
         self._with_notices = False
         self.recorder = Recorder(store, self.clock, Notices(self.clock, self._hear), self._count)
@@ -67,7 +67,7 @@ class RecorderRig:
         self._with_notices = True
 
     def _hear(self, arrival: Block) -> None:
-        self.told.append(json.loads(arrival.payload)[0]["text"])
+        self.notice_texts.append(json.loads(arrival.payload)[0]["text"])
         if self._with_notices:
             self.recorder.add(arrival)
 

@@ -160,7 +160,7 @@ async def test_a_session_counts_its_stored_samples(rig: RecorderRig) -> None:
     assert done == Catalogue(rig.store).page().sessions[0]
     row = find_row(rig.store, session)
     assert row.configuration == rig.settings.config.read_text()
-    assert rig.told == ["Recording of “first” has begun.", "Recording of “first” has ended."]
+    assert rig.notice_texts == ["Recording of “first” has begun.", "Recording of “first” has ended."]
 
 
 async def test_one_session_at_a_time(rig: RecorderRig) -> None:
@@ -242,13 +242,13 @@ async def test_failure_and_recovery_are_reported_once_each(
         rig.fail(broken)
         await until(lambda: rig.store.failing, "the failure")
         rig.recorder.add(depth_block(0, 5))
-        await until(lambda: len(rig.told) == 2, "the alarm")
+        await until(lambda: len(rig.notice_texts) == 2, "the alarm")
         await asyncio.sleep(0.05)
-    await until(lambda: len(rig.told) == 3, "the all-clear")
+    await until(lambda: len(rig.notice_texts) == 3, "the all-clear")
     await until(lambda: rig.numbers() == list(range(5)), "the rows")
     work.cancel()
     await rig.recorder.stop(session)
-    assert [text.split(":")[0] for text in rig.told[1:3]] == [
+    assert [text.split(":")[0] for text in rig.notice_texts[1:3]] == [
         "Nothing can be stored",
         "Storing works again.",
     ]
@@ -269,7 +269,7 @@ async def test_writing_is_retried_without_a_session(
     assert rig.recorder.session is None
     work = asyncio.create_task(rig.recorder.run())
     await until(lambda: rig.store.failing is None, "the recovery")
-    await until(lambda: rig.told == ["Storing works again."], "the all-clear")
+    await until(lambda: rig.notice_texts == ["Storing works again."], "the all-clear")
     work.cancel()
 
 

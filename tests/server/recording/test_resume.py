@@ -43,7 +43,7 @@ class Wreck:
         self.before = RecorderRig(store, settings)
         self.after = RecorderRig(store, settings)
         self.runs = {name: f"{name} run" for name in SENT_BY}
-        self.kept = {name: ReplayCache(run, self.before.clock) for name, run in self.runs.items()}
+        self.caches = {name: ReplayCache(run, self.before.clock) for name, run in self.runs.items()}
         self.following = {name: dict.fromkeys(BY_NAME, 0) for name in SENT_BY}
         self.session = 0
 
@@ -52,18 +52,18 @@ class Wreck:
         for block in blocks:
             name = "simulator" if block.topic.name == "truth" else "runtime"
             self.following[name][block.topic.name] = block.following
-            self.kept[name].add(block.data, self.following[name])
+            self.caches[name].add(block.data, self.following[name])
             if heard:
                 self.before.recorder.add(replace(block, run=self.runs[name]))
 
     def restart(self, name: str) -> None:
         self.runs[name] = f"another {name} run"
-        self.kept[name] = ReplayCache(self.runs[name], self.before.clock)
+        self.caches[name] = ReplayCache(self.runs[name], self.before.clock)
         self.following[name] = dict.fromkeys(BY_NAME, 0)
 
     def answers(self) -> dict[str, BacklogReply]:
         question = write_question(dict.fromkeys(BY_NAME, 0))
-        return {name: BacklogReply.from_bytes(cache.answer(question)) for name, cache in self.kept.items()}
+        return {name: BacklogReply.from_bytes(cache.answer(question)) for name, cache in self.caches.items()}
 
     async def start(self, first: int = 0) -> None:
         """Record for a while; some samples are stored, some later ones are not."""
@@ -118,7 +118,7 @@ async def test_a_resumed_session_has_no_gap_and_no_duplicate(wreck: Wreck, first
     assert wreck.after.numbers("truth") == list(range(9))
     assert wreck.after.gaps() == []
     assert [chunk.number for chunk in wreck.after.chunks()] == [0, 1, 2]
-    assert wreck.after.told[0].startswith("The server was killed. Recording of “dive” continues")
+    assert wreck.after.notice_texts[0].startswith("The server was killed. Recording of “dive” continues")
 
 
 async def test_a_resumed_session_shows_its_tags_and_bookmarks(wreck: Wreck) -> None:
@@ -239,7 +239,7 @@ async def test_another_run_of_the_runtime_is_another_recording(wreck: Wreck) -> 
     assert not missing["runtime"].same_run
     assert (wreck.state, wreck.after.recorder.session) == ("interrupted", None)
     assert wreck.after.numbers() == list(range(10))
-    assert "The server was killed while “dive” was recorded" in wreck.after.told[0]
+    assert "The server was killed while “dive” was recorded" in wreck.after.notice_texts[0]
 
 
 async def test_another_run_that_has_sent_the_same_samples_is_another_recording(wreck: Wreck) -> None:
@@ -282,12 +282,12 @@ async def test_samples_beyond_the_replay_cache_end_the_session(
     assert wreck.state == "interrupted"
     missed = [("depth", "missed", 15), ("debug", "missed", 1), ("truth", "missed", 3)]
     assert sorted(wreck.after.gaps()) == sorted(missed)
-    assert "19 samples sent since are lost" in wreck.after.told[0]
+    assert "19 samples sent since are lost" in wreck.after.notice_texts[0]
 
 
 async def test_without_an_answer_of_the_runtime_the_session_ends(wreck: Wreck) -> None:
     await wreck.start()
-    del wreck.kept["runtime"]
+    del wreck.caches["runtime"]
     await wreck.resume()
     assert wreck.state == "interrupted"
 

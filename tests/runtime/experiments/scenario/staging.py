@@ -24,7 +24,7 @@ def document(seconds: float, *events: str, seed: int = 7, scene: str = POOL, mor
     return f"{head}\n[scene]\n{scene}\n\n{control}\n{more}\n{happens}"
 
 
-class Told:
+class Output:
     """The complete output of a run."""
 
     def __init__(self) -> None:
@@ -78,9 +78,9 @@ class Told:
         return [record for time, record in self.rows[topic] if start <= time < end]
 
 
-def perform(scenario: str | Scenario, board: str = "host", report: Told | None = None) -> Told:
+def perform(scenario: str | Scenario, board: str = "host", report: Output | None = None) -> Output:
     """Run a scenario to its end."""
-    report = report or Told()
+    report = report or Output()
     read = read_scenario(scenario) if isinstance(scenario, str) else scenario
     ScenarioRun(read, boards()[board], report).perform(lambda firmware: {"firmware": str(len(firmware))})
     return report

@@ -22,7 +22,7 @@ from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.run import AFTERWARDS, ScenarioRun
 from robot_runtime.simulation.scene.availability import missing
 from server.library.film import decode_film
-from tests.runtime.experiments.scenario.staging import ROOT, Told, document, perform
+from tests.runtime.experiments.scenario.staging import ROOT, Output, document, perform
 
 SHIPPED = sorted((ROOT / "robot_runtime/experiments/scenario/shipped").glob("*.toml"))
 ARM = 'at = 0.5; do = "arm"'
@@ -235,7 +235,7 @@ def test_the_rendered_scene_is_seen() -> None:
 
 
 def test_a_cancelled_run_disarms_and_ends_in_order() -> None:
-    report = Told()
+    report = Output()
     run = ScenarioRun(read_scenario(document(60, ARM)), boards()["host"], report)
     report.on_event = lambda event: run.cancel() if event.get("time") == 3.0 else None
     run.perform(lambda _: {})
@@ -301,7 +301,7 @@ def test_a_missing_build_of_the_board_is_reported(tmp_path: Path) -> None:
 )
 def test_a_run_says_which_craft_swims(more: str, title: str, mass: float) -> None:
     robot = CraftDocument(title="Turtle 2", craft=Craft(mass=2.5))
-    report = Told()
+    report = Output()
     own = more.startswith("craft")
     text = more + document(1) if own else document(1, more=more)
     scenario = read_scenario(text, robot.craft)

@@ -86,16 +86,16 @@ def test_a_recording_is_measured_and_only_one_of_its_own_is_removed(shared_stack
         find_processes(runner, folder.run)
     )
     before = [session["id"] for session in shared_stack.api.get("/sessions").json()]
-    told: list[str] = []
-    figures = measure_load(folder, 1.0, told.append)
+    lines: list[str] = []
+    figures = measure_load(folder, 1.0, lines.append)
     assert 8 <= figures.ticks <= 12
     assert figures.period_ms == pytest.approx(100, abs=20)
     assert figures.samples > 100
     assert figures.viewer_kb_per_s > 1
     assert figures.robot_percent > 0
-    assert told
+    assert lines
     assert [session["id"] for session in shared_stack.api.get("/sessions").json()] == before
     mine = shared_stack.api.post("/sessions", json={"name": "mine"}).raise_for_status().json()["id"]
-    measure_load(folder, 1.0, told.append)
+    measure_load(folder, 1.0, lines.append)
     assert shared_stack.api.get("/sessions").json()[0]["id"] == mine
     shared_stack.api.post(f"/sessions/{mine}/stop").raise_for_status()

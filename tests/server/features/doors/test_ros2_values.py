@@ -145,7 +145,7 @@ async def by_rosbridge(page: RosbridgeClient, topics: Set[str]) -> dict[str, dic
     results: dict[str, dict[str, Any]] = {}
     while results.keys() != topics:
         message = await page.next("publish")
-        if message["topic"] in topics and is_wanted(message["topic"], flat := flatten(message["msg"])):
+        if message["topic"] in topics and matches(message["topic"], flat := flatten(message["msg"])):
             results[message["topic"]] = flat
     return results
 
@@ -155,12 +155,12 @@ async def by_ros2(peer: Ros2Peer, topics: Set[str]) -> dict[str, dict[str, Any]]
     results: dict[str, dict[str, Any]] = {}
     while results.keys() != topics:
         topic, message = await asyncio.to_thread(peer.received.get, timeout=SECONDS)
-        if topic in topics and is_wanted(topic, flat := flatten(message)):
+        if topic in topics and matches(topic, flat := flatten(message)):
             results[topic] = flat
     return results
 
 
-def is_wanted(topic: str, message: dict[str, Any]) -> bool:
+def matches(topic: str, message: dict[str, Any]) -> bool:
     """Return False for the server's own lines and health, of which each door may send others first."""
     expected = {"/rosout": ("msg", "hello"), "/diagnostics": ("status.0.message", MARK)}
     key, value = expected.get(topic, ("", None))

@@ -19,7 +19,7 @@ class TuningRig:
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
         self._gathering = SampleBuffer("depth")
-        self._told: list[Experiment] = []
+        self._published: list[Experiment] = []
         self.curve = TuningCurve([], [], [], [])
         """Of the last experiment."""
         bus = flight.robot.bus
@@ -61,14 +61,14 @@ class TuningRig:
         self.flight.robot.control.set_loop("depth", controller=controller, gains=gains)
 
     def _run(self, expected: StepStart | RelayStart) -> dict[str, Any]:
-        self._gathering, self._told = SampleBuffer("depth"), []
+        self._gathering, self._published = SampleBuffer("depth"), []
         command = expected.command(1)
         self.flight.command(command.policy.name, **command.payload())
-        self.flight.until(lambda: bool(self._told) and self._told[-1].phase in ENDED, 250.0)
+        self.flight.until(lambda: bool(self._published) and self._published[-1].phase in ENDED, 250.0)
         starts: dict[str, float] = {}
-        for message in self._told:
+        for message in self._published:
             starts.setdefault(message.phase, message.since)
-        end = self._told[-1]
+        end = self._published[-1]
         assert end.phase == "complete", end.text
         result, self.curve, problem = measure_run(expected, self._gathering, starts, "complete", "")
         assert problem == ""
@@ -85,4 +85,4 @@ class TuningRig:
 
     def _take_progress(self, document: object) -> None:
         assert isinstance(document, Experiment)
-        self._told.append(document)
+        self._published.append(document)
