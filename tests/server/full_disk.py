@@ -129,8 +129,8 @@ async def film(data: DataFolder, config: Path) -> dict[str, Any]:
     """Record a dive with its film; the disk is full for longer than memory holds the film."""
     settings, clock = Settings(data=data, config=config), SimulatedClock()
     store, notices = Store(data.database), list[str]()
-    told = Notices(clock, lambda block: notices.append(block.payload.decode()))
-    recorder = Recorder(store, clock, told, lambda: None)
+    sender = Notices(clock, lambda block: notices.append(block.payload.decode()))
+    recorder = Recorder(store, clock, sender, lambda: None)
     storing = asyncio.create_task(recorder.run())
     session = await recorder.start(new_row(settings, clock, "full", "", "null"))
     recording = Recording(store, find_row(store, session.id))
