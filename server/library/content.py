@@ -145,11 +145,21 @@ class Recording:
 
     def pictures(self, topic: str, start: float = -inf, end: float = inf) -> Iterator[tuple[float, bytes]]:
         """Yield the pictures between `start` and `end`: their times and their JPEG files."""
-        return self._pictures(topic, "picture", start, end)
+        for chunk in self.chunks(topic, start, end):
+            with _reading(chunk, topic, "picture"):
+                yield from (picture for picture in decode_pictures(chunk.data) if start <= picture[0] <= end)
 
     def film(self, start: float = -inf, end: float = inf) -> Iterator[tuple[float, bytes]]:
         """Yield the pictures of the film between `start` and `end`: their times, each a `FilmPicture`."""
-        return self._pictures(FILM.name, "film", start, end)
+        return ((time, picture) for _, time, picture in self.numbered_film(start, end))
+
+    def numbered_film(self, start: float = -inf, end: float = inf) -> Iterator[tuple[int, float, bytes]]:
+        """Yield these pictures with their numbers, which follow each other where none is missing."""
+        for chunk in self.chunks(FILM.name, start, end):
+            with _reading(chunk, FILM.name, "film"):
+                for number, (time, picture) in enumerate(decode_pictures(chunk.data), chunk.first):
+                    if start <= time <= end:
+                        yield number, time, picture
 
     def columns(
         self, topic: str, names: Sequence[str], start: float = -inf, end: float = inf
@@ -205,11 +215,6 @@ class Recording:
                         yield json.loads(line)
             except (ValueError, KeyError) as problem:
                 raise _damaged(chunk, topic, problem) from problem
-
-    def _pictures(self, topic: str, kind: str, start: float, end: float) -> Iterator[tuple[float, bytes]]:
-        for chunk in self.chunks(topic, start, end):
-            with _reading(chunk, topic, kind):
-                yield from (picture for picture in decode_pictures(chunk.data) if start <= picture[0] <= end)
 
     def _tables(self, topic: str, start: float, end: float) -> "Iterator[NDArray[np.uint8]]":
         """Yield the bytes of rows in the shape (chunks, size of a row, samples), of chunks of one length.

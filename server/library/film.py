@@ -255,7 +255,14 @@ def small_picture(recording: Recording, time: float) -> bytes | None:
 
 
 def _read(recording: Recording, start: float, end: float) -> Iterator[Picture]:
-    return ((time, FilmPicture(picture)) for time, picture in recording.film(start, end))
+    """Yield the pictures; after missing ones it goes on with one that can be shown without them."""
+    following, lost = None, False
+    for number, time, data in recording.numbered_film(start, end):
+        picture = FilmPicture(data)
+        lost = (lost or following not in (None, number)) and not picture.is_key
+        following = number + 1
+        if not lost:
+            yield time, picture
 
 
 def _decode(picture: FilmPicture) -> "av.VideoFrame":

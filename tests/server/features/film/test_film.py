@@ -35,7 +35,7 @@ from server.features.film import choice, plug
 from server.features.film.config import FilmConfig
 from server.features.film.plug import LEASE_SECONDS
 from server.library.content import Recording, RecordingError
-from server.library.film import SPANS_SHOWN, describe_film
+from server.library.film import SPANS_SHOWN, describe_film, film_part
 from server.library.retention import RetentionWorker
 from server.platform.models import Chunk
 from server.platform.notices import Notices
@@ -106,6 +106,22 @@ async def test_a_part_begins_with_the_key_picture_before_it(served: Served) -> N
     assert numbers == list(range(numbers[0], numbers[-1] + 1))
     assert numbers[0] == round((float(answer.headers["film-start"]) - span["start"]) * RATE)
     assert numbers[-1] == int(3.5 * RATE + 1e-6)
+
+
+async def test_after_a_hole_it_goes_on_with_a_picture_that_needs_none_before_it(
+    store: Store, settings: Settings
+) -> None:
+    clock = SimulatedClock(100.0)
+    recorder = Recorder(store, clock, Notices(clock, lambda _: None), lambda: None)
+    session = await recorder.start(new_row(settings, clock, "holed", "", "null"))
+    for number, picture in enumerate(h264(100.0)):
+        if number not in range(20, 25):
+            recorder.add(film_block(number, *picture))
+    await recorder.stop(session.id)
+    recording = Recording(store, find_row(store, session.id))
+    assert len(list(recording.film())) == COUNT - 5
+    _, part = film_part(recording, 100.0, 60.0)
+    assert [number for _, number in read_film(part)] == [*range(20), *range(2 * int(RATE), COUNT)]
 
 
 async def test_a_film_of_jpeg_files_is_played_too(served: Served) -> None:
