@@ -8,6 +8,7 @@ from sqlmodel import Session, col, func, select
 
 from robot_runtime.clock import Clock
 from server.library.schemas import NOTES_MAX, SHOWN_MAX, Bookmark
+from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.errors import NotFoundError
 from server.platform.models import BookmarkRow, SessionRow
 from server.platform.store import Store, insert_row
@@ -70,13 +71,20 @@ class Bookmarks:
 
         return await self._store.write(write)
 
-    async def change(self, session: int, mark: int, moment: float | None, text: str | None) -> Bookmark:
-        """Change time or note of a bookmark; None leaves it unchanged."""
+    async def change(
+        self, session: int, mark: int, moment: float | None, text: str | None, base: str | None = None
+    ) -> Bookmark:
+        """Change time or note of a bookmark; None leaves it unchanged.
+
+        `base` is the note that the editing began from. Raise ChangedMeanwhileError.
+        """
         now = self._now(session)
 
         def write(connection: Connection) -> Bookmark:
             start, duration = _span(connection, session)
             row = _find_mark(connection, session, mark)
+            if text is not None and base is not None and row.text not in (base, text):
+                raise ChangedMeanwhileError(f"The note at {row.time - start:.1f} s", "")
             if moment is not None:
                 row.time = _resolve(moment, start, duration, now)
             if text is not None:

@@ -134,3 +134,8 @@ class BookmarkChanges(RequestBody):
 
     time: Moment | None = None
     text: Note | None = None
+    base: Annotated[str, Field(max_length=100_000)] | None = Field(
+        default=None,
+        description="the note when the editing began: refused if somebody else has changed it since. "
+        "null replaces any",
+    )

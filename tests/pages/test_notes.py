@@ -40,7 +40,13 @@ def test_a_note_is_written_in_markdown_at_a_moment_and_found_again(page: Page, s
     region.get_by_role("textbox", name=re.compile("^Note at")).fill("a" * 10_001)
     expect(region.get_by_text("and may have")).to_be_visible()
     region.get_by_role("textbox", name=re.compile("^Note at")).fill("surfaced")
-    region.get_by_role("button", name="Save").click()
+    mark = site.api.get(f"/sessions/{session}").json()["marks"][-1]
+    site.api.patch(f"/sessions/{session}/markers/{mark['id']}", json={"text": "theirs"}).raise_for_status()
+    region.get_by_role("button", name="Save", exact=True).click()
+    expect(region.get_by_text("was saved since you opened it")).to_be_visible()
+    assert notes(site, session) == [NOTE, "theirs"]
+    region.get_by_role("button", name="Save mine over it").click()
+    expect(region.get_by_role("listitem").get_by_text("surfaced", exact=True)).to_be_visible()
     expect(region.get_by_role("link", name="Replay from 00:00")).to_have_count(2)
     assert "surfaced" in notes(site, session)
 

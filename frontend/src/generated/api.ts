@@ -606,6 +606,8 @@ export interface components {
         };
         /** @description Changes of a bookmark; null leaves a field unchanged. */
         BookmarkChanges: {
+            /** @description the note when the editing began: refused if somebody else has changed it since. null replaces any */
+            base?: string | null;
             text?: string | null;
             time?: number | null;
         };

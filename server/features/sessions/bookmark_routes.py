@@ -37,7 +37,7 @@ async def change_mark(
     bookmarks: Provided[Bookmarks], session: Identifier, mark: Identifier, body: BookmarkChanges
 ) -> Bookmark:
     """Change the time or the note of a bookmark."""
-    return await bookmarks.change(session, mark, body.time, body.text)
+    return await bookmarks.change(session, mark, body.time, body.text, body.base)
 
 
 @router.operation("DELETE /sessions/{session}/markers/{mark}", Need.OPERATOR, NO_BOOKMARK, ConflictError)

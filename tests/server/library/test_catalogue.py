@@ -112,6 +112,12 @@ async def test_bookmarks_are_set_live_and_later(served: Served) -> None:
     late = (await api.post(path, json={"time": duration, "text": "end"})).json()
     changed = await api.patch(f"{path}/{late['id']}", json={"time": 0, "text": "start"})
     assert (changed.json()["time"], changed.json()["text"]) == (0, "start")
+    # Whoever began from another note than there is now replaces it only if that is meant.
+    stale = {"text": "begin", "base": "end"}
+    refused = await api.patch(f"{path}/{late['id']}", json=stale)
+    assert (refused.status_code, refused.json()["kind"]) == (409, "changed")
+    assert "The note at 0.0 s was saved since you opened it." in refused.json()["detail"]
+    assert (await api.patch(f"{path}/{late['id']}", json=stale | {"text": "start"})).status_code == 200
     marks = (await api.get(f"/sessions/{session}")).json()["marks"]
     assert [mark["text"] for mark in marks] == ["start", "bubbles"]
     assert (await api.delete(f"{path}/{live['id']}")).status_code == 204
