@@ -34,6 +34,7 @@ def test_a_gain_is_changed_live_undone_saved_and_restored(any_page: Page, stack:
     expect(gain).to_have_count(0)
     page.keyboard.press("Control+k")
     page.keyboard.type(KP)
+    expect(page.get_by_role("option", name=KP).first).to_be_visible()
     page.keyboard.press("Enter")
     expect(gain).to_be_focused()
     expect(gain).to_be_in_viewport()
