@@ -32,7 +32,7 @@ def write_report(start: StartFigures, dive: LoadFigures, state: dict[str, Any]) 
     ]
     return "\n".join(
         [
-            f"mucat {VERSION} on {_describe_computer()}; {_describe_robot(state)}; recording for "
+            f"µ-CAT {VERSION} on {_describe_computer()}; {_describe_robot(state)}; recording for "
             f"{dive.seconds:.0f} s with one viewer. % of one core, MB that cannot be dropped.",
             "",
             "| figure | value |",
