@@ -24,7 +24,8 @@ class ProcessorTime:
         result = yield
         if nextitem is None or nextitem.path != item.path:
             now = spent()
-            self._spent[item.nodeid.partition("::")[0]] += now - self._before
+            # What a process took that nobody waits for, such as a daemon, is gone with it.
+            self._spent[item.nodeid.partition("::")[0]] += max(0.0, now - self._before)
             self._before = now
         return result
 

@@ -76,7 +76,7 @@ def test_a_relay_gives_gains_that_a_step_tries_and_back_returns_from(
     fill(page, **{"Centre": "0.3", "Command_±": "100", "Cycles": "3"})
     arm(page)
     page.get_by_role("button", name="Run the relay").click()
-    table = page.get_by_role("region", name="Gains by rule, beside the present ones")
+    table = page.get_by_role("table", name="Gains by rule, beside the present ones")
     expect(table).to_be_visible()
     assert empty.api.get("/robot").json()["loops"][0] == depth
 
