@@ -1,5 +1,6 @@
 """Routes of the interface: built at their first use, and strict with JSON bodies."""
 
+import threading
 from collections.abc import Callable, Coroutine
 from typing import Any
 
@@ -8,6 +9,9 @@ from fastapi.routing import APIRoute
 from starlette.routing import compile_path
 
 from robot_runtime.contract.text_input import read_json
+
+_BUILDING = threading.RLock()
+"""Held while a route is built: functions of routes run in threads, and look at all of them."""
 
 
 class JsonRoute(APIRoute):
@@ -30,11 +34,13 @@ class JsonRoute(APIRoute):
 
     def __getattr__(self, name: str) -> Any:
         """Return an attribute that the route has once it is built."""
-        options = self.__dict__.pop("_options", None)
-        if options is None:
-            raise AttributeError(name)
-        super().__init__(self.path, self.endpoint, **options)
-        return getattr(self, name)
+        with _BUILDING:
+            options = self.__dict__.pop("_options", None)
+            if options is not None:
+                super().__init__(self.path, self.endpoint, **options)
+        if name in self.__dict__:
+            return self.__dict__[name]
+        raise AttributeError(name)
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         """Return the route's handler, for requests of this class."""
