@@ -35,6 +35,7 @@ UNRUN = {
         "it installs into the system; tests/packages installs the same wheels"
     ),
     ("develop/add-a-topic.md", "self.bus.publish_document(SAY, event)"): "a line of a method",
+    ("run/computers.md", "mucat bench"): "a minute beside a robot; tests/server/features/bench measures one",
     ("run/packages.md", "python3 -m venv mucat"): "tests/packages does the same with the wheels",
     ("run/packages.md", "sudo apt install python3-venv python3-picamera2 avrdude"): "a Raspberry Pi",
     ("run/packages.md", PI_32_BITS): "a Raspberry Pi of 32 bits",

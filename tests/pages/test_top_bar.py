@@ -55,7 +55,9 @@ OVERLAPS = """async ([widths, breaks]) => {
         frame.style.width = `${width}px`;
         if (breaks.some((one) => last < one !== width < one)) {
             // The page hears of it in the next frame; meanwhile what it shows may have become old.
-            for (let beat = 0; beat < 3 || (dimmed() > faded && beat < 300); beat += 1) {
+            // The pages' names leave a narrow bar once the page has heard.
+            const deaf = () => dimmed() > faded || (width < breaks[0] && top.querySelector('.tab') !== null);
+            for (let beat = 0; beat < 3 || (deaf() && beat < 300); beat += 1) {
                 await new Promise(inner.requestAnimationFrame);
             }
         }

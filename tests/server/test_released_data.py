@@ -92,6 +92,7 @@ def test_the_timeline_is_the_same(released: Settings, session: str) -> None:
     assert [marker.pop("name") for marker in timeline["markers"]] == [
         marker["text"] for marker in timeline["markers"]
     ]
+    assert timeline.pop("filmed") is False
     assert timeline == EXPECTED["timeline"][session]
 
 
