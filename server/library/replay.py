@@ -34,6 +34,8 @@ from server.platform.models import Chunk
 
 RANGE_MAX = 120.0
 """s of one answer."""
+ROUNDING = 1e-6
+"""s; two times that lie `RANGE_MAX` apart may lie farther apart once each has been added to another."""
 HISTORY_MAX = CHART_SECONDS
 """s before the start of which an answer holds samples for charts."""
 BYTES_MAX = 16_000_000
@@ -83,7 +85,7 @@ def read_blocks_between(
     before it, of what charts need at most so much time before it, of lines the last ones. Raise
     InvalidError, StoreError.
     """
-    if end - start > RANGE_MAX:
+    if end - start > RANGE_MAX + ROUNDING:
         raise InvalidError(f"One answer holds at most {RANGE_MAX:g} s; ask for the rest after it.")
     ranges = {name: _range(name, start, end, history) for name in recording.topics}
     described = describe_topics()

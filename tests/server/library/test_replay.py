@@ -199,6 +199,15 @@ def test_too_long_a_range_is_refused_with_the_limit(dive: Recording) -> None:
         read_blocks_between(dive, 100.0, 100.1 + RANGE_MAX)
 
 
+def test_a_range_of_two_minutes_is_not_too_long_by_rounding(dive: Recording) -> None:
+    # From 32,768 s on numbers lie twice as far apart.
+    zero, starts = 32_700.0, [number / 1000 for number in range(100)]
+    ranges = [(zero + start, zero + (start + RANGE_MAX)) for start in starts]
+    assert any(end - start > RANGE_MAX for start, end in ranges)
+    for start, end in ranges:
+        assert read_blocks_between(dive, start, end).left_out == 0
+
+
 def test_damaged_chunks_are_left_out_and_counted(store: Store, dive: Recording) -> None:
     change(store, "UPDATE chunk SET data = x'00' WHERE topic = 'depth' AND number = 2")
     stretch = read_blocks_between(dive, 100.0, 110.0)
