@@ -18,7 +18,7 @@ class HubPage:
     """A page's end of a socket, whose reading can be paused."""
 
     offers = True
-    """Whether the socket takes frames at once."""
+    """The socket takes frames at once; else each waits for its turn."""
 
     def __init__(self, hub: Hub, caller: Identity = SHELL) -> None:
         self.received: list[bytes | str] = []
