@@ -43,6 +43,8 @@ _LENGTH = 600.0
 _MINUTE = round(60 * RATE)
 """Pictures."""
 _SEEKS = 100
+_GIVEN_UP_MS = 10_000
+"""From which on a seek has failed: the film stands at another picture."""
 
 
 def measure() -> dict[str, float]:
@@ -148,10 +150,13 @@ def _seek(page: Page) -> list[float]:
         number = chance.randrange(round(_LENGTH * RATE))
         delays.append(
             film.evaluate(
-                f"""(video, [at, number]) => new Promise((resolve) => {{
+                f"""(video, [at, number]) => new Promise((resolve, reject) => {{
                     const began = performance.now();
                     const look = () => {{
-                        if (({READ_NUMBER})(video) === number) resolve(performance.now() - began);
+                        const passed = performance.now() - began;
+                        const seen = ({READ_NUMBER})(video);
+                        if (seen === number) resolve(passed);
+                        else if (passed > {_GIVEN_UP_MS}) reject(`${{seen}} at ${{at}} s, not ${{number}}`);
                         else requestAnimationFrame(look);
                     }};
                     video.currentTime = at;

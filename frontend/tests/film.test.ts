@@ -15,7 +15,7 @@ describe('the next part of a film', () => {
   });
 
   it('begins short where the film stands, so that it comes soon', () => {
-    expect(nextPart(20, [], WHOLE)).toEqual({ start: 20, seconds: 2 });
+    expect(nextPart(20, [], WHOLE)).toEqual({ start: 20, seconds: 1 });
   });
 
   it('follows what is stored, in longer parts', () => {
@@ -26,13 +26,18 @@ describe('the next part of a film', () => {
     expect(nextPart(20, [{ start: 19, end: 22 }, { start: 22.1, end: 32 }], WHOLE)).toEqual({ start: 32, seconds: 10 });
   });
 
+  it('ends where a part is in store, whose later pictures build on its first ones', () => {
+    expect(nextPart(20, [{ start: 19, end: 22 }, { start: 25, end: 30 }], WHOLE)).toEqual({ start: 22, seconds: 3 });
+    expect(nextPart(20, [{ start: 20.6, end: 30 }], WHOLE)?.seconds).toBeCloseTo(0.6);
+  });
+
   it('is none while enough is in store, and at the end of the film', () => {
     expect(nextPart(20, [{ start: 19, end: 36 }], WHOLE)).toBeNull();
     expect(nextPart(99, [{ start: 90, end: 99.9 }], WHOLE)).toBeNull();
   });
 
   it('begins with the first picture of a film that begins later', () => {
-    expect(nextPart(0, [], WHOLE)).toEqual({ start: 1, seconds: 2 });
+    expect(nextPart(0, [], WHOLE)).toEqual({ start: 1, seconds: 1 });
   });
 
   it('comes before a pause of the film ends', () => {

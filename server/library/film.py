@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from fractions import Fraction
 from io import BytesIO
-from itertools import chain, dropwhile, pairwise
+from itertools import chain, dropwhile, pairwise, takewhile
 from math import inf
 from struct import Struct
 from typing import IO, TYPE_CHECKING, Any
@@ -221,12 +221,15 @@ def write_mp4(
 def film_part(recording: Recording, start: float, seconds: float) -> tuple[float, bytes]:
     """Return the time of a part's first picture (s, steady clock), and the part as a fragmented MP4 file.
 
+    It ends before a key picture: pictures that build on one which another part replaces, a browser forgets.
     Raise NoFilmError, CodecMissingError, StoreError, RecordingError.
     """
-    pictures = film_from(recording, start, start + seconds)
+    pictures = film_from(recording, start, inf)
     origin, first = next(pictures)
+    end = start + seconds
+    whole = takewhile(lambda item: item[0] < end or not item[1].is_key, pictures)
     output = BytesIO()
-    write_mp4(chain([(origin, first)], pictures), output)
+    write_mp4(chain([(origin, first)], whole), output)
     return origin, output.getvalue()
 
 

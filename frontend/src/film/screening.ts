@@ -4,7 +4,7 @@ import type { Span } from './spans';
 
 /** s of one part; the first one after a seek is short, so that it comes soon */
 const PART = 10;
-const FIRST = 2;
+const FIRST = 1;
 /** s of the film in store ahead below which more is fetched, and behind beyond which it is given up */
 const AHEAD = 15;
 const BEHIND = 60;
@@ -20,7 +20,10 @@ export function nextPart(at: number, stored: readonly Span[], spans: readonly Sp
   const span = here ?? spans.find((one) => one.end > end + NEAR);
   if (span === undefined) return null;
   const start = Math.max(end, span.start);
-  return start - at > AHEAD ? null : { start, seconds: end === at ? FIRST : PART };
+  if (start - at > AHEAD) return null;
+  // What is in store is not written over: later pictures of it build on the first ones.
+  const room = (stored.find((one) => one.start > start)?.start ?? Infinity) - start;
+  return { start, seconds: Math.min(end === at ? FIRST : PART, room) };
 }
 
 /** Fetches the film of a session part by part into a video, whose time is s since the session's start. */
