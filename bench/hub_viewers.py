@@ -19,6 +19,9 @@ from robot_runtime.transport.blocks import HEADER
 
 _TIMEOUT = 20.0
 _DRAIN_EVERY = 0.05
+_PING = b"\x89\x04"
+"""The beginning of a server's ping with the four bytes that websockets puts into it (RFC 6455, 5.2)."""
+_PING_BYTES = 6
 _TOPICS = {BY_NAME[name].id for name in TOPICS}
 
 Times = Callable[[str | bytes], list[float]]
@@ -87,6 +90,17 @@ class TimedViewer:
     def send(self, text: str) -> None:
         """Send a text."""
         self._protocol.send_text(text.encode())
+        self._flush()
+
+    def answer_pings(self, data: bytes) -> None:
+        """Answer the pings in raw bytes of the socket: whoever answers none is sent away.
+
+        A sample that looks like one is answered as well, which the server ignores.
+        """
+        at = data.find(_PING)
+        while 0 <= at <= len(data) - _PING_BYTES:
+            self._protocol.send_pong(data[at + len(_PING) : at + _PING_BYTES])
+            at = data.find(_PING, at + 1)
         self._flush()
 
     def close(self) -> None:
@@ -187,9 +201,10 @@ class Drain:
             raise ConnectionError("a viewer was sent away; is the computer too busy?")
 
     def _run(self) -> None:
+        ends = dict[socket.socket, bytes]()
         while not self._ended.wait(_DRAIN_EVERY):
-            sockets = [viewer.socket for viewer in self._viewers]
-            for ready in select.select(sockets, [], [], 0)[0]:
+            viewers = {viewer.socket: viewer for viewer in self._viewers}
+            for ready in select.select(viewers, [], [], 0)[0]:
                 try:
                     data = ready.recv(1 << 20)
                 except ConnectionError:
@@ -198,3 +213,6 @@ class Drain:
                     self._sent_away = True
                     return
                 self.bytes += len(data)
+                # A ping may be cut in two.
+                viewers[ready].answer_pings(ends.get(ready, b"") + data)
+                ends[ready] = data[1 - _PING_BYTES :]
