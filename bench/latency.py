@@ -158,10 +158,12 @@ def _press_keys(page: Page, board: EmulatorClient) -> list[float]:
     """Return the ms from each press, at a random moment of both loops' ticks, to a fin's drive."""
     chance = random.Random(1)
     page.get_by_role("button", name="Manual", exact=True).click()
-    page.get_by_role("button", name="Hold to arm").hover()
+    arming = page.get_by_role("button", name="Hold to arm")
+    arming.hover()
     page.mouse.down()
-    expect(page.get_by_role("region", name="Drive")).to_be_visible(timeout=10_000)
+    expect(arming).to_have_count(0, timeout=10_000)
     page.mouse.up()
+    expect(page.get_by_role("group", name="Keys").first).to_be_visible()
     page.evaluate(_KEYS_DOWN)
     delays = []
     for press in range(_PRESSES):
