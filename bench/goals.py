@@ -182,6 +182,13 @@ GOALS = {
     "story.hour_ms": _most(1000, "python"),
     "story.eight_hours_ms": _most(2000, "python"),
     "store.ingest_ratio": _least(50, "python"),
+    # 8 x 5 gains with 3 seeds.
+    "sweep_rows.equal": _least(120),
+    **{
+        f"sweep.{on}{name}": goal
+        for on in ("", "dask_")
+        for name, goal in (("overhead_percent", _most(3)), ("speed_up_two_x", _least(1.8)))
+    },
     # A Raspberry Pi Zero takes some thirty times as long, and looks four times a second in the thesis.
     "vision.ms_per_frame": _most(250 / 30, "memory"),
     # A tick of the control node, and a picture and a half; in the thesis a picture alone is 250 ms.

@@ -13,12 +13,17 @@ def hash_software() -> str:
 
     It is the same wherever they are installed. Raise OSError.
     """
-    root = Path(__file__).parent
+    return hash_sources(Path(__file__).parent)
+
+
+def hash_sources(*roots: Path) -> str:
+    """Return the same of all Python sources in these folders. Raise OSError."""
     made = sha256()
-    for path in sorted(root.rglob("*.py")):
-        content = path.read_bytes()
-        made.update(f"{path.relative_to(root).as_posix()} {len(content)}\n".encode())
-        made.update(content)
+    for root in roots:
+        for path in sorted(root.rglob("*.py")):
+            content = path.read_bytes()
+            made.update(f"{path.relative_to(root).as_posix()} {len(content)}\n".encode())
+            made.update(content)
     return made.hexdigest()[:HASH_CHARACTERS]
 
 

@@ -37,12 +37,18 @@ class LazyGroup(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
         """Return the names in alphabetical order."""
-        return list(places_of_commands())
+        return [name for name in places_of_commands() if " " not in name]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
         """Import a command; return None where there is none of this name."""
-        location = places_of_commands().get(cmd_name)
-        command: click.Command | None = None if location is None else resolve_name(location)
+        places = places_of_commands()
+        command: click.Command | None = None if cmd_name not in places else resolve_name(places[cmd_name])
+        if isinstance(command, click.Group):
+            # "scenario sweep": a feature may add to the group of another.
+            for name, location in places.items():
+                group, _, below = name.partition(" ")
+                if group == cmd_name and below:
+                    command.add_command(resolve_name(location), below)
         return command
 
 

@@ -29,7 +29,7 @@ class Feature:
     are entries of earlier versions: empty ones are passed over, others refused in words. `routes` are places
     of `Operations`, or of functions that make them of their section. `prepare` is the place of a function of
     the settings, called before the server is loaded; a SetupError ends the start. `commands` are those of the
-    shell, by their names. `plug` is the place of its `Plug`.
+    shell, by their names; "scenario sweep" is one of the group `scenario`. `plug` is the place of its `Plug`.
     """
 
     name: str

@@ -29,3 +29,12 @@ FIGURES: tuple[FigureMeaning, ...] = (
     ),
     describe("gaps", "Gaps in the recording", "", 0, "Times that samples of a topic missed the recording."),
 )
+
+DEEPEST = describe("deepest", "Greatest depth", "m", 2, "Greatest depth in the range.", "neither")
+ALARMS = describe("alarms", "Alarms", "", 0, "Alarms that began in the range, or ended it.")
+RUN_FIGURES: tuple[FigureMeaning, ...] = (
+    *(meaning for meaning in FIGURES if meaning.name != "gaps"),
+    DEEPEST,
+    ALARMS,
+)
+"""Of a run that is not recorded: those of a comparison, and two of a dive."""

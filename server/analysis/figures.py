@@ -94,10 +94,15 @@ def count(store: Reader, recording: Recording, spans: Sequence[Span]) -> dict[st
 
     Raise StoreError, RecordingError.
     """
+    whole = spans or (Span(0.0, recording.row.duration),)
+    return count_samples(recording, spans) | {"gaps": _gaps(store, recording, whole)}
+
+
+def count_samples(recording: Recording, spans: Sequence[Span]) -> dict[str, Figure]:
+    """Return the same without the gaps: what follows from the samples alone. Raise as `count`."""
     figures = {"fin_strokes": count_fin_strokes(recording, spans)} if spans else {}
     whole = spans or (Span(0.0, recording.row.duration),)
-    losses = count_losses(read_losses(recording), whole)
-    return figures | losses | {"gaps": _gaps(store, recording, whole)}
+    return figures | count_losses(read_losses(recording), whole)
 
 
 def complete(measured: Mapping[str, Figure], why: str) -> dict[str, Figure]:

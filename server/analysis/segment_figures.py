@@ -5,7 +5,7 @@ from math import inf
 
 import numpy as np
 
-from server.analysis.definitions import FIGURES
+from server.analysis.definitions import ALARMS, DEEPEST, FIGURES
 from server.analysis.figures import (
     MEASURED,
     NEVER_ARMED,
@@ -29,9 +29,9 @@ _SHARED = ("rmse", "cycle_amplitude", "overshoot", "settling_time", "fin_strokes
 """Figures of a comparison that a dive shows, too."""
 STORY_FIGURES: tuple[FigureMeaning, ...] = (
     describe("duration", "Duration", "s", 1, "Time armed in the range.", "neither"),
-    describe("deepest", "Greatest depth", "m", 2, "Greatest depth in the range.", "neither"),
+    DEEPEST,
     *(meaning for name in _SHARED for meaning in FIGURES if meaning.name == name),
-    describe("alarms", "Alarms", "", 0, "Alarms that began in the range, or ended it."),
+    ALARMS,
 )
 _OF_A_STEP = ("cycle_amplitude", "overshoot", "settling_time")
 DISARMING = 1.0

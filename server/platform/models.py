@@ -288,3 +288,74 @@ class LayoutRow(SQLModel, table=True):
     document: str
     author: str = ""
     version: int = 1
+
+
+class SweepRow(SQLModel, table=True):
+    """A sweep. Times are UTC (s since 1970).
+
+    `scenario_text` and `craft` are those at its start, so that it can be resumed when the library has
+    changed. States: "waiting", "running", "complete", "cancelled", "failed", "interrupted". `done` and
+    `failed` count its runs; `best` is a `SweepBest` by `best_figure` as JSON, "" while there is none.
+    `parameters` are their names as JSON.
+    """
+
+    __tablename__ = "sweep"
+    __table_args__ = (NEVER_AGAIN,)
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    title: str
+    scenario: str
+    text: str
+    scenario_text: str
+    craft: str
+    who: str
+    state: str
+    problem: str = ""
+    runs: int
+    done: int = 0
+    failed: int = 0
+    best: str = ""
+    best_figure: str
+    parameters: str
+    made: float
+    started: float | None = None
+    ended: float | None = None
+
+
+class SweepRunRow(SQLModel, table=True):
+    """A run of a sweep that is done: its variant, its seed, the value of each parameter as JSON.
+
+    `key` names the row of its figures, which several sweeps may share.
+    """
+
+    __tablename__ = "sweep_run"
+    __table_args__ = (UniqueConstraint("sweep_id", "number", name="sweep_run_place"),)
+
+    id: int | None = Field(default=None, primary_key=True)
+    sweep_id: int = Field(foreign_key="sweep.id")
+    number: int
+    variant: int
+    seed: int
+    parameter_values: str
+    key: str = Field(foreign_key="run_figures.key", index=True)
+
+
+class RunFiguresRow(SQLModel, table=True):
+    """The figures of a scenario in simulated time, by everything that they follow from.
+
+    `key` is the hash of the scenario with its seed, the range, craft, firmware and software. `simulated` and
+    `seconds` are the scenario's time and the time that it took, s; `problem` says why it failed, "" if it did
+    not. `figures` are values by name as JSON, null where there is none, and `words` the reasons for that.
+    """
+
+    __tablename__ = "run_figures"
+
+    key: str = Field(primary_key=True)
+    firmware: str
+    software: str
+    simulated: float
+    seconds: float
+    problem: str
+    figures: str
+    words: str

@@ -61,6 +61,11 @@ def ask(
     return _send(folder, method, path, data, {"content-type": "application/json"}, seconds)
 
 
+def fetch(folder: DataFolder, path: str, seconds: float = ASK_SECONDS) -> bytes:
+    """Return the server's answer to a request for a file below /api. Raise SetupError as `ask`."""
+    return _send_for_bytes(folder, "GET", path, None, {}, seconds)
+
+
 def send_file(folder: DataFolder, path: str, file: Path, seconds: float) -> Any:
     """Return the server's answer to a posted file. Raise SetupError as `ask`, OSError."""
     with file.open("rb") as body:
@@ -76,6 +81,18 @@ def _send(
     headers: dict[str, str],
     seconds: float,
 ) -> Any:
+    text = _send_for_bytes(folder, method, path, body, headers, seconds)
+    return json.loads(text) if text else None
+
+
+def _send_for_bytes(
+    folder: DataFolder,
+    method: str,
+    path: str,
+    body: bytes | IO[bytes] | None,
+    headers: dict[str, str],
+    seconds: float,
+) -> bytes:
     try:
         address = folder.address.read_text(encoding="ascii").strip()
         headers["authorization"] = f"Bearer {folder.token.read_text(encoding='ascii').strip()}"
@@ -89,14 +106,14 @@ def _send(
     opener = urllib.request.build_opener(*handlers)
     try:
         with opener.open(request, timeout=seconds) as answer:
-            text = answer.read()
+            content: bytes = answer.read()
     except urllib.error.HTTPError as problem:
         raise SetupError(_detail(problem)) from problem
     except OSError as problem:
         raise SetupError(
             f"The server of {folder.path} does not answer at {address}: {problem}. Start it with `mucat run`."
         ) from problem
-    return json.loads(text) if text else None
+    return content
 
 
 def _detail(problem: urllib.error.HTTPError) -> str:

@@ -5,7 +5,7 @@ import tomllib
 
 from playwright.sync_api import Page, Route, expect
 
-from server.features.scenarios.library import _shipped
+from server.library.scenarios import shipped_scenarios
 from server.platform.settings import DataFolder
 from tests.browser.code import draft_of, write_code
 from tests.browser.scenarios import open_scenarios
@@ -44,7 +44,7 @@ def test_a_check_that_is_refused_for_now_is_asked_again(page: Page) -> None:
 
 def test_an_edited_scenario_stays_in_the_list_until_it_is_saved(page: Page, site: DiveSite) -> None:
     open_scenarios(page)
-    text = _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1)
+    text = shipped_scenarios()["figure_14"].replace('"figure_14"', '"mine"', 1)
     page.get_by_role("button", name="Edit", exact=True).click()
     write_code(page.get_by_role("textbox", name="Scenario as TOML"), text)
     edited = page.get_by_role("radio", name=re.compile("^Edited"))
@@ -66,7 +66,7 @@ def test_an_edited_scenario_stays_in_the_list_until_it_is_saved(page: Page, site
 
 
 def test_an_untouched_scenario_follows_the_library_and_leaves_no_draft(page: Page, site: DiveSite) -> None:
-    text = _shipped()["figure_14"].replace('"figure_14"', '"theirs"', 1)
+    text = shipped_scenarios()["figure_14"].replace('"figure_14"', '"theirs"', 1)
     later = text.replace("duration = 60", "duration = 61")
     site.api.post("/scenarios", json={"text": text}).raise_for_status()
     try:
@@ -98,7 +98,7 @@ def test_an_untouched_scenario_follows_the_library_and_leaves_no_draft(page: Pag
 
 
 def test_the_run_after_a_cancelled_one_can_be_cancelled(page: Page, site: DiveSite) -> None:
-    text = _shipped()["figure_14"].replace("duration = ", "duration = 3600 # ", 1)
+    text = shipped_scenarios()["figure_14"].replace("duration = ", "duration = 3600 # ", 1)
     open_scenarios(page)
     start = {"text": text, "place": "simulated"}
     first, _ = (site.api.post("/scenarios/runs", json=start).json()["run"] for _ in range(2))
@@ -115,7 +115,7 @@ def test_the_run_after_a_cancelled_one_can_be_cancelled(page: Page, site: DiveSi
 def test_an_event_is_moved_edited_added_and_deleted_and_the_text_keeps_its_comments(page: Page) -> None:
     open_scenarios(page)
     page.get_by_role("button", name="Edit", exact=True).click()
-    before = _shipped()["figure_14"]
+    before = shipped_scenarios()["figure_14"]
     box = page.get_by_role("textbox", name="Scenario as TOML")
     expect(box).to_be_visible()
     card = page.get_by_role("slider", name="card yellow").first
@@ -168,7 +168,11 @@ def test_an_event_is_moved_edited_added_and_deleted_and_the_text_keeps_its_comme
 
 
 def test_a_scenario_lists_its_runs(page: Page, site: DiveSite) -> None:
-    text = _shipped()["figure_14"].replace("duration = 60", "duration = 5").replace('"figure_14"', '"brief"')
+    text = (
+        shipped_scenarios()["figure_14"]
+        .replace("duration = 60", "duration = 5")
+        .replace('"figure_14"', '"brief"')
+    )
     text = text[: text.index("[[events]]")]
     site.api.post("/scenarios/runs", json={"text": text, "place": "simulated"}).raise_for_status()
     open_scenarios(page)

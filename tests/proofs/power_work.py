@@ -26,10 +26,11 @@ from server.cli import main
 from server.features.comm_tests.runs import CommTestStore
 from server.features.exports.jobs import Jobs
 from server.features.exports.schemas import NewExport
-from server.features.scenarios.library import _shipped, keep_scenario
+from server.features.scenarios.library import keep_scenario
 from server.library.bookmarks import Bookmarks
 from server.library.catalogue import Catalogue
 from server.library.retention import RetentionWorker
+from server.library.scenarios import shipped_scenarios
 from server.platform import store as store_module
 from server.platform.notices import Notices
 from server.platform.schema import prepare
@@ -167,7 +168,7 @@ class Work:
         self.file(backup)
 
     def _keep(self) -> None:
-        text = _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1)
+        text = shipped_scenarios()["figure_14"].replace('"figure_14"', '"mine"', 1)
         path = self.settings.data.scenarios / "mine.toml"
         keep_scenario(self.settings.data.scenarios, text)
         before = self.file(path)

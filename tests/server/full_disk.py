@@ -27,12 +27,13 @@ from robot_runtime.transport.blocks import Block, row
 from robot_runtime.vision.film import open_coder
 from server.features.backup.command import back_up
 from server.features.comm_tests.runs import CommTestStore
-from server.features.scenarios.library import _shipped, keep_scenario
+from server.features.scenarios.library import keep_scenario
 from server.library.catalogue import Catalogue
 from server.library.content import Recording
 from server.library.film import film_from, write_mp4
 from server.library.listing import Listing
 from server.library.retention import RetentionWorker
+from server.library.scenarios import shipped_scenarios
 from server.platform.disk_space import FileWriteError
 from server.platform.models import SessionRow
 from server.platform.notices import Notices
@@ -108,7 +109,7 @@ def beside(data: DataFolder, runs: CommTestStore, run: int) -> list[Callable[[],
     """Other writes to the disk: a communication test's next cell, a scenario, a backup."""
 
     async def keep() -> None:
-        keep_scenario(data.scenarios, _shipped()["figure_14"].replace('"figure_14"', '"mine"', 1))
+        keep_scenario(data.scenarios, shipped_scenarios()["figure_14"].replace('"figure_14"', '"mine"', 1))
 
     async def copy() -> None:
         back_up(data, data.config, data.path / "copy.db")

@@ -283,7 +283,7 @@ def test_the_run_folder_stays_while_a_process_of_a_killed_server_lives(settings:
 
 
 def test_the_server_loads_no_heavy_library_and_nothing_of_a_feature_that_is_off(tmp_path: Path) -> None:
-    (tmp_path / "robot.toml").write_text("[features]\nidentification = false\n")
+    (tmp_path / "robot.toml").write_text("[features]\nidentification = false\nsweeps = false\n")
     program = (
         "import sys, server.app; from pathlib import Path; from pkgutil import resolve_name\n"
         "from server.container import features_on; from server.platform.settings import read_settings\n"
@@ -291,7 +291,8 @@ def test_the_server_loads_no_heavy_library_and_nothing_of_a_feature_that_is_off(
         "for one in features_on(read_settings(folder / 'robot.toml', folder, None, None, {})):\n"
         "    [resolve_name(place) for place in (*one.routes, one.plug) if place]\n"
         "heavy = {'numpy', 'cv2', 'plotly', 'alembic', 'scipy', 'rosbags', 'paho', 'pyarrow', 'xlsxwriter'}\n"
-        "off = ('server.features.doors.', 'server.features.events.', 'server.features.identification.')\n"
+        "off = ('doors', 'events', 'identification', 'sweeps')\n"
+        "off = tuple(f'server.features.{name}.' for name in off)\n"
         "found = [one for one in sys.modules if one in heavy or one.startswith(off)]\n"
         "print(*sorted(one for one in found if not one.endswith('.config')))"
     )

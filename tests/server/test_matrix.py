@@ -195,6 +195,18 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/scenarios/state"): "viewer",
     ("POST", "/api/scenarios/runs"): "operator",
     ("POST", "/api/scenarios/cancel"): "operator",
+    ("GET", "/api/sweeps"): "viewer",
+    ("POST", "/api/sweeps"): "operator",
+    ("POST", "/api/sweeps/check"): "viewer",
+    ("GET", "/api/sweeps/template"): "viewer",
+    ("GET", "/api/sweeps/{sweep}"): "viewer",
+    ("DELETE", "/api/sweeps/{sweep}"): "operator",
+    ("GET", "/api/sweeps/{sweep}/runs"): "viewer",
+    ("GET", "/api/sweeps/{sweep}/table"): "viewer",
+    ("POST", "/api/sweeps/{sweep}/cancel"): "operator",
+    ("POST", "/api/sweeps/{sweep}/resume"): "operator",
+    ("POST", "/api/sweeps/{sweep}/profile"): "operator",
+    ("POST", "/api/sweeps/{sweep}/runs/{run}/session"): "operator",
     ("GET", "/api/identification"): "viewer",
     ("POST", "/api/identification"): "operator",
     ("POST", "/api/identification/cancel"): "operator",
@@ -229,6 +241,7 @@ LINKED = {
     "/api/profiles/{profile}/file",
     "/api/sessions/{session}/snapshot",
     "/api/sessions/{session}/thumbnail",
+    "/api/sweeps/{sweep}/table",
     "/api/vision/toml",
 }
 """Files, pictures and frames that a page names by their address, so that the cookie alone must do."""
@@ -249,7 +262,7 @@ LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3
 REFUSALS = {401, 403, 423}
 SAFE = {"GET", "HEAD", "OPTIONS"}
 ABSENT = dict.fromkeys(
-    ("session", "run", "device", "layout", "profile", "panel", "mark", "name", "link"), "999"
+    ("session", "run", "sweep", "device", "layout", "profile", "panel", "mark", "name", "link"), "999"
 )
 ABSENT |= {"export": "0" * 16, "path": "index.html"}
 QUERIES = {"/api/control/take": "over=true"}

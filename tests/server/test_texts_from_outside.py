@@ -14,11 +14,11 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.experiments.comm_test.__main__ import _decode as decode_comm_test
 from robot_runtime.experiments.comm_test.document import read_document
 from robot_runtime.vision.settings_file import VisionSettingsFile
+from server.driving.profiles import ProfileError, read_file
 from server.features.comm_tests import command as comm_tests
 from server.features.events.outlet import OutletError, read_secret
 from server.features.missions import command as missions
 from server.features.panels.scripts import list_panels
-from server.features.parameters.profiles import ProfileError, read_file
 from server.features.scenarios import command as scenarios
 from server.features.vision.routes import read_document as read_vision
 from server.platform.settings import Settings, SetupError
@@ -240,9 +240,10 @@ READ_THEIR_OWN = {
     "server/features/installation/units/__init__.py",
     "server/features/installation/updater.py",
     "server/features/panels/frame.py",
-    "server/features/scenarios/library.py",
     "server/features/scenarios/live_setup.py",
+    "server/features/sweeps/runner.py",
     "server/http/help_pages.py",
+    "server/library/scenarios.py",
     "server/openapi.py",
     "server/platform/audit_file.py",
     "server/platform/certificate.py",

@@ -388,6 +388,38 @@ export interface paths {
     "/api/storage": {
         get: operations["getStorage"];
     };
+    "/api/sweeps": {
+        get: operations["listSweeps"];
+        post: operations["startSweep"];
+    };
+    "/api/sweeps/check": {
+        post: operations["checkSweep"];
+    };
+    "/api/sweeps/template": {
+        get: operations["getSweepTemplate"];
+    };
+    "/api/sweeps/{sweep}": {
+        get: operations["getSweep"];
+        delete: operations["deleteSweep"];
+    };
+    "/api/sweeps/{sweep}/cancel": {
+        post: operations["cancelSweep"];
+    };
+    "/api/sweeps/{sweep}/profile": {
+        post: operations["saveSweepProfile"];
+    };
+    "/api/sweeps/{sweep}/resume": {
+        post: operations["resumeSweep"];
+    };
+    "/api/sweeps/{sweep}/runs": {
+        get: operations["listSweepRuns"];
+    };
+    "/api/sweeps/{sweep}/runs/{run}/session": {
+        post: operations["recordSweepRun"];
+    };
+    "/api/sweeps/{sweep}/table": {
+        get: operations["downloadSweepTable"];
+    };
     "/api/tags": {
         get: operations["listTags"];
     };
@@ -1239,6 +1271,11 @@ export interface components {
             /** @description names of topics; null for all. Not for csv-grid, archive and report */
             topics: string[] | null;
         };
+        /** @description A reason for failed runs, and how many have it. */
+        FailureCount: {
+            count: number;
+            reason: string;
+        };
         /** @description A figure's value, or the reason for its lack. */
         Figure: {
             mark: components["schemas"]["FigureMark"] | null;
@@ -1248,6 +1285,13 @@ export interface components {
              * @default
              */
             words: string;
+        };
+        /** @description The mean of a figure over the seeds, with its 95 % interval; null with one seed. */
+        FigureInterval: {
+            count: number;
+            high: number | null;
+            low: number | null;
+            mean: number;
         };
         /** @description The position of a figure in its chart: s since the session's start or the step, and m or degrees. */
         FigureMark: {
@@ -1912,6 +1956,13 @@ export interface components {
             /** @enum {string} */
             scope?: "read" | "operate" | "administer";
         };
+        /** @description The second best variant: by how much its figure exceeds the best one's, paired by equal seeds. */
+        NextBest: {
+            difference: number;
+            high: number | null;
+            low: number | null;
+            variant: number;
+        };
         /** @description A field of a leaf or a branch. */
         NodeField: {
             default: number | string | boolean | null;
@@ -2145,6 +2196,14 @@ export interface components {
             /** @description 16 hexadecimal digits, never used again */
             run: string;
             title: string;
+        };
+        /** @description The best variant with its 95 % interval. */
+        RankedBest: {
+            high: number | null;
+            low: number | null;
+            mean: number;
+            next: components["schemas"]["NextBest"] | null;
+            variant: number;
         };
         /** @description The newest raw readings of all parts. */
         RawReadings: {
@@ -2582,6 +2641,10 @@ export interface components {
                 [key: string]: components["schemas"]["SignalLine"];
             };
         };
+        /** @description The run of the scenario that makes a session. */
+        SessionRun: {
+            run: string;
+        };
         /** @description The summary of an ended session, for the list. Values that its samples lack are null or empty. */
         SessionSummary: {
             /** @description number of alarms that began */
@@ -2828,6 +2891,145 @@ export interface components {
             whole: {
                 [key: string]: components["schemas"]["Figure"];
             };
+        };
+        /** @description The best variant by now: its values in the order of the parameters, the mean of the best figure. */
+        SweepBest: {
+            mean: number;
+            values: (number | string | null)[];
+            variant: number;
+        };
+        /** @description A sweep with its document and what came of it by now. */
+        SweepDetail: {
+            best: components["schemas"]["RankedBest"] | null;
+            best_figure: string;
+            done: number;
+            ended: number | null;
+            failed: number;
+            failures: components["schemas"]["FailureCount"][];
+            figures: components["schemas"]["FigureMeaning"][];
+            id: number;
+            /** @description by figures: a variant whose mean is beyond one is not the best */
+            limits: {
+                [key: string]: number;
+            };
+            made: number;
+            name: string;
+            parameters: components["schemas"]["SweepParameter"][];
+            /** @description why it failed, or what it waits for; empty otherwise */
+            problem: string;
+            /** @description s; null where not known */
+            remaining: number | null;
+            runs: number;
+            scenario: string;
+            started: number | null;
+            /** @enum {string} */
+            state: "running" | "waiting" | "complete" | "cancelled" | "failed" | "interrupted";
+            text: string;
+            title: string;
+            variants: components["schemas"]["SweepVariant"][];
+            who: string;
+            /** @description runs that are computed at once; 0 while it does not run */
+            workers: number;
+        };
+        /** @description The text of a sweep. */
+        SweepDocument: {
+            /** @description TOML */
+            text: string;
+        };
+        /** @description An entry of the scenario that varies. */
+        SweepParameter: {
+            /** @description each seed draws its own value, the same in every variant */
+            by_seed: boolean;
+            /** @enum {string} */
+            kind: "list" | "range" | "random" | "search";
+            label: string;
+            /** @description its path in the scenario */
+            name: string;
+            unit: string;
+            /** @description of a list, a range or samples; of one by the seed, of a search: the least, the most */
+            values: (number | string)[];
+        };
+        /** @description A sweep's problems, entry by entry, or what it will do. */
+        SweepPlan: {
+            parameters: components["schemas"]["SweepParameter"][];
+            problems: components["schemas"]["EntryProblem"][];
+            runs: number;
+            /** @description that it takes, by the runs measured so far; null where none is */
+            seconds: number | null;
+            /** @description of its first 5000 runs, how many are computed already; of a search 0 */
+            stored: number;
+            variants: number;
+            /** @description runs that are computed at once; 0 where a scheduler decides */
+            workers: number;
+        };
+        /** @description The variant whose gains are saved, and the name of the profile. */
+        SweepProfile: {
+            name: string;
+            variant: number;
+        };
+        /** @description A run of a variant. */
+        SweepRunDetail: {
+            figures: {
+                [key: string]: number | null;
+            };
+            number: number;
+            reason: string;
+            /** @description that it took */
+            seconds: number;
+            seed: number;
+            /** @description the session that was recorded of it; null without one */
+            session: number | null;
+            /** @enum {string} */
+            state: "complete" | "failed";
+            values: (number | string)[];
+            variant: number;
+        };
+        /** @description The sweep that was started. */
+        SweepStarted: {
+            sweep: number;
+        };
+        /** @description A sweep in the list. */
+        SweepSummary: {
+            best: components["schemas"]["SweepBest"] | null;
+            best_figure: string;
+            done: number;
+            ended: number | null;
+            failed: number;
+            id: number;
+            made: number;
+            name: string;
+            /** @description names */
+            parameters: string[];
+            /** @description why it failed, or what it waits for; empty otherwise */
+            problem: string;
+            /** @description s; null where not known */
+            remaining: number | null;
+            runs: number;
+            scenario: string;
+            started: number | null;
+            /** @enum {string} */
+            state: "running" | "waiting" | "complete" | "cancelled" | "failed" | "interrupted";
+            title: string;
+            who: string;
+            /** @description runs that are computed at once; 0 while it does not run */
+            workers: number;
+        };
+        /** @description A sweep to begin with. */
+        SweepTemplate: {
+            /** @description TOML */
+            text: string;
+        };
+        /** @description A variant: its values in the order of the parameters, null where each seed draws its own. */
+        SweepVariant: {
+            failed: number;
+            figures: {
+                [key: string]: components["schemas"]["FigureInterval"];
+            };
+            number: number;
+            runs: number;
+            values: (number | string | null)[];
+            /** @description all limits are kept */
+            within: boolean;
         };
         /** @description The track from an arming to the disarming. */
         SwumTrack: {
@@ -3260,7 +3462,9 @@ export type EntryProblem = components['schemas']['EntryProblem'];
 export type EstimatedPosition = components['schemas']['EstimatedPosition'];
 export type EventField = components['schemas']['EventField'];
 export type ExportOptions = components['schemas']['ExportOptions'];
+export type FailureCount = components['schemas']['FailureCount'];
 export type Figure = components['schemas']['Figure'];
+export type FigureInterval = components['schemas']['FigureInterval'];
 export type FigureMark = components['schemas']['FigureMark'];
 export type FigureMeaning = components['schemas']['FigureMeaning'];
 export type FilmDescription = components['schemas']['FilmDescription'];
@@ -3329,6 +3533,7 @@ export type NewReadingLink = components['schemas']['NewReadingLink'];
 export type NewScenario = components['schemas']['NewScenario'];
 export type NewSession = components['schemas']['NewSession'];
 export type NewToken = components['schemas']['NewToken'];
+export type NextBest = components['schemas']['NextBest'];
 export type NodeField = components['schemas']['NodeField'];
 export type OwnPanel = components['schemas']['OwnPanel'];
 export type OwnPanelScript = components['schemas']['OwnPanelScript'];
@@ -3353,6 +3558,7 @@ export type Profile = components['schemas']['Profile'];
 export type ProfileText = components['schemas']['ProfileText'];
 export type Proposal = components['schemas']['Proposal'];
 export type QueuedRun = components['schemas']['QueuedRun'];
+export type RankedBest = components['schemas']['RankedBest'];
 export type RawReadings = components['schemas']['RawReadings'];
 export type ReadingLink = components['schemas']['ReadingLink'];
 export type ReadingToken = components['schemas']['ReadingToken'];
@@ -3384,6 +3590,7 @@ export type SessionDetail = components['schemas']['SessionDetail'];
 export type SessionGap = components['schemas']['SessionGap'];
 export type SessionGroup = components['schemas']['SessionGroup'];
 export type SessionLines = components['schemas']['SessionLines'];
+export type SessionRun = components['schemas']['SessionRun'];
 export type SessionSummary = components['schemas']['SessionSummary'];
 export type ShownChart = components['schemas']['ShownChart'];
 export type Signal = components['schemas']['Signal'];
@@ -3401,6 +3608,17 @@ export type StepStart = components['schemas']['StepStart'];
 export type Storage = components['schemas']['Storage'];
 export type Story = components['schemas']['Story'];
 export type StoryFigures = components['schemas']['StoryFigures'];
+export type SweepBest = components['schemas']['SweepBest'];
+export type SweepDetail = components['schemas']['SweepDetail'];
+export type SweepDocument = components['schemas']['SweepDocument'];
+export type SweepParameter = components['schemas']['SweepParameter'];
+export type SweepPlan = components['schemas']['SweepPlan'];
+export type SweepProfile = components['schemas']['SweepProfile'];
+export type SweepRunDetail = components['schemas']['SweepRunDetail'];
+export type SweepStarted = components['schemas']['SweepStarted'];
+export type SweepSummary = components['schemas']['SweepSummary'];
+export type SweepTemplate = components['schemas']['SweepTemplate'];
+export type SweepVariant = components['schemas']['SweepVariant'];
 export type SwumTrack = components['schemas']['SwumTrack'];
 export type TableCell = components['schemas']['TableCell'];
 export type TakenSnapshot = components['schemas']['TakenSnapshot'];
@@ -5601,6 +5819,186 @@ export interface operations {
             200: {
                 content: {
                     "application/json": components["schemas"]["Storage"];
+                };
+            };
+        };
+    };
+    listSweeps: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SweepSummary"][];
+                };
+            };
+        };
+    };
+    startSweep: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SweepDocument"];
+            };
+        };
+        responses: {
+            201: {
+                content: {
+                    "application/json": components["schemas"]["SweepStarted"];
+                };
+            };
+        };
+    };
+    checkSweep: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SweepDocument"];
+            };
+        };
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SweepPlan"];
+                };
+            };
+        };
+    };
+    getSweepTemplate: {
+        parameters: {
+            query: {
+                scenario: string;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SweepTemplate"];
+                };
+            };
+        };
+    };
+    getSweep: {
+        parameters: {
+            query?: never;
+            path: {
+                sweep: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SweepDetail"];
+                };
+            };
+        };
+    };
+    deleteSweep: {
+        parameters: {
+            query?: never;
+            path: {
+                sweep: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            204: { content?: never };
+        };
+    };
+    cancelSweep: {
+        parameters: {
+            query?: never;
+            path: {
+                sweep: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            204: { content?: never };
+        };
+    };
+    saveSweepProfile: {
+        parameters: {
+            query?: never;
+            path: {
+                sweep: number;
+            };
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SweepProfile"];
+            };
+        };
+        responses: {
+            201: {
+                content: {
+                    "application/json": components["schemas"]["Profile"];
+                };
+            };
+        };
+    };
+    resumeSweep: {
+        parameters: {
+            query?: never;
+            path: {
+                sweep: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            204: { content?: never };
+        };
+    };
+    listSweepRuns: {
+        parameters: {
+            query?: {
+                /** @description of this variant alone */
+                variant?: number | null;
+            };
+            path: {
+                sweep: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SweepRunDetail"][];
+                };
+            };
+        };
+    };
+    recordSweepRun: {
+        parameters: {
+            query?: never;
+            path: {
+                sweep: number;
+                run: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            201: {
+                content: {
+                    "application/json": components["schemas"]["SessionRun"];
+                };
+            };
+        };
+    };
+    downloadSweepTable: {
+        parameters: {
+            query?: never;
+            path: {
+                sweep: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "text/csv": unknown;
                 };
             };
         };

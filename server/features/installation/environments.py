@@ -21,6 +21,7 @@ EXTRAS = (
     ("mqtt", "paho-mqtt"),
     ("parquet", "pyarrow"),
     ("identify", "scipy"),
+    ("lab", "distributed"),
     ("ros2", "rosbags"),
 )
 """Extras of mucat, each with the package that shows that a robot has it, or is to have it."""

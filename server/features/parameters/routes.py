@@ -9,8 +9,8 @@ from robot_runtime.contract.commands import ParametersCommand
 from robot_runtime.contract.documents import Parameters
 from robot_runtime.errors import RefusedError
 from server.driving.changes import COMMAND_ERRORS, Changes
-from server.driving.schemas import Change, Restored
-from server.features.parameters.profiles import (
+from server.driving.profiles import (
+    Profile,
     ProfileError,
     Profiles,
     UnknownProfileError,
@@ -18,7 +18,8 @@ from server.features.parameters.profiles import (
     read_file,
     write_file,
 )
-from server.features.parameters.schemas import Imported, NewProfile, Profile, ProfileText, Undo
+from server.driving.schemas import Change, Restored
+from server.features.parameters.schemas import Imported, NewProfile, ProfileText, Undo
 from server.http.dependencies import Provided
 from server.http.operations import Identifier, Operations
 from server.http.sign_in.identity import Caller

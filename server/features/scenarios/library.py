@@ -1,24 +1,17 @@
 """The scenarios that ship with the program, and those of the data folder."""
 
-import logging
 import threading
-from importlib.resources import files
 from pathlib import Path
 
 from robot_runtime.contract.limits import ConfigError
-from robot_runtime.contract.text_input import TextError, load_text
-from robot_runtime.contract.toml_text import BYTES_MAX
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
 from server.features.scenarios.schemas import ScenarioText, summarize
+from server.library.scenarios import SHIPPED, own_scenarios, shipped_scenarios
 from server.platform.disk_space import FileWriteError, explain_write_error
 from server.platform.edited_meanwhile import ChangedMeanwhileError, mark_text
 
-log = logging.getLogger(__name__)
-
-SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link", "sea_trial")
-"""The shipped scenarios, the thesis's own first."""
 SCENARIOS_MAX = 200
 """Of the data folder."""
 _STORING = threading.Lock()
@@ -27,8 +20,8 @@ _STORING = threading.Lock()
 
 def list_scenarios(own: Path) -> list[ScenarioText]:
     """Return the shipped scenarios, then those in the folder `own` by name; unreadable files are left out."""
-    return [_describe(name, text, shipped=True) for name, text in _shipped().items()] + [
-        _describe(file.stem, text, shipped=False) for file, text in _own(own)
+    return [_describe(name, text, shipped=True) for name, text in shipped_scenarios().items()] + [
+        _describe(file.stem, text, shipped=False) for file, text in own_scenarios(own)
     ]
 
 
@@ -44,7 +37,7 @@ def keep_scenario(own: Path, text: str, base: str | None = None) -> Scenario:
         raise RefusedError(f"{scenario.name} ships with the program. Choose another name.")
     path = own / f"{scenario.name}.toml"
     with _STORING:
-        stored = dict(_own(own))
+        stored = dict(own_scenarios(own))
         there = stored.get(path, "")
         if base is not None and text != there and base != mark_text(there):
             raise ChangedMeanwhileError(f"The scenario {scenario.name}", "", gone=not there)
@@ -56,24 +49,6 @@ def keep_scenario(own: Path, text: str, base: str | None = None) -> Scenario:
         except OSError as problem:
             raise FileWriteError(explain_write_error(problem, path)) from problem
     return scenario
-
-
-def _shipped() -> dict[str, str]:
-    folder = files("robot_runtime.experiments.scenario") / "shipped"
-    return {name: (folder / f"{name}.toml").read_text(encoding="utf-8") for name in SHIPPED}
-
-
-def _own(folder: Path) -> list[tuple[Path, str]]:
-    texts = []
-    for file in sorted(folder.glob("*.toml")):
-        try:
-            if file.stat().st_size <= BYTES_MAX:
-                texts.append((file, load_text(file)))
-        except OSError as problem:
-            log.warning("the scenario %s cannot be read: %s", file, problem)
-        except TextError as problem:
-            log.warning("the scenario %s cannot be read: it %s", file, problem)
-    return texts
 
 
 def _describe(name: str, text: str, shipped: bool) -> ScenarioText:

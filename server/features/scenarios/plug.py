@@ -4,7 +4,9 @@ from collections.abc import Coroutine, Sequence
 from typing import Any, ClassVar
 
 from robot_runtime.clock import Clock
+from robot_runtime.experiments.scenario.document import read_scenario
 from server.driving.changes import Changes
+from server.driving.simulated_starts import SimulatedStarts
 from server.feature import Plug
 from server.features.scenarios.live_run import LiveExecutor
 from server.features.scenarios.runs import ScenarioRunner
@@ -47,10 +49,18 @@ class ScenariosPlug(Plug):
     makers: ClassVar[tuple[Maker, ...]] = (make_live, make_scenarios)
 
     def __init__(
-        self, scenarios: ScenarioRunner, live: LiveExecutor, bridge: Bridge, occupation: Occupation
+        self,
+        scenarios: ScenarioRunner,
+        live: LiveExecutor,
+        bridge: Bridge,
+        occupation: Occupation,
+        starts: SimulatedStarts,
+        settings: Settings,
     ) -> None:
         self._scenarios = scenarios
         self._live = live
+        self._settings = settings
+        starts.provide(self._start_simulated)
         bridge.on_stop.append(scenarios.see_stop)
         occupation.robot.append(self._explain)
 
@@ -65,6 +75,10 @@ class ScenariosPlug(Plug):
     async def stop(self) -> None:
         """Cancel the running work."""
         await self._scenarios.close()
+
+    def _start_simulated(self, text: str, who: str) -> str:
+        scenario = read_scenario(text, self._settings.read_craft())
+        return self._scenarios.start(scenario, text, "simulated", "host", who)
 
     def _explain(self) -> str | None:
         run = self._scenarios.active

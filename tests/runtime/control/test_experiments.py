@@ -45,7 +45,7 @@ def begin(flight: Flight, request: dict[str, Any]) -> None:
     flight.command(f"{kind}_experiment", **fields)
 
 
-class Lab:
+class LoopLab:
     """A flight with its published experiments."""
 
     def __init__(self, flight: Flight) -> None:
@@ -83,7 +83,7 @@ OVER = ("complete", "stopped", "failed")
 
 def test_a_step_begins_once_settled_and_restores_everything() -> None:
     with Flight() as flight:
-        lab = Lab(flight)
+        lab = LoopLab(flight)
         flight.arm()
         lab.begin(STEP)
         end = lab.until_over(30.0)
@@ -123,7 +123,7 @@ def test_a_start_that_never_settles_is_given_up_after_its_time_limit() -> None:
 
 def test_a_relay_finds_the_load_and_a_steady_cycle() -> None:
     with Flight() as flight:
-        lab = Lab(flight)
+        lab = LoopLab(flight)
         flight.arm()
         lab.begin(RELAY)
         end = lab.until_over(120.0)
@@ -175,7 +175,7 @@ def test_the_bias_of_a_relay_is_the_load(load: float) -> None:
 )
 def test_any_end_of_steering_ends_the_experiment(end: Any, phase: str, text: str) -> None:
     with Flight() as flight:
-        lab = Lab(flight)
+        lab = LoopLab(flight)
         flight.arm()
         lab.begin(STEP)
         flight.run(3.0)
@@ -189,7 +189,7 @@ def test_any_end_of_steering_ends_the_experiment(end: Any, phase: str, text: str
 
 def test_it_ends_beyond_its_limits() -> None:
     with Flight() as flight:
-        lab = Lab(flight)
+        lab = LoopLab(flight)
         flight.arm()
         lab.begin(RELAY | {"amplitude": 1.0, "high": 0.65, "set_point": 0.6, "hysteresis": 0.05})
         over = lab.until_over(30.0)
@@ -225,7 +225,7 @@ def test_an_experiment_on_an_angle_speaks_in_degrees() -> None:
 
 def test_a_relay_without_cycles_gives_up() -> None:
     with Flight() as flight:
-        lab = Lab(flight)
+        lab = LoopLab(flight)
         flight.arm()
         lab.begin(RELAY | {"duration": 5.0})
         over = lab.until_over(10.0)

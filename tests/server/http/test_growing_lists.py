@@ -8,6 +8,8 @@ from robot_runtime.contract.missions import NODES_MAX
 from robot_runtime.contract.vision_settings import COLOURS_MAX, MARKERS_MAX
 from robot_runtime.experiments.comm_test.document import CELLS_MAX
 from robot_runtime.experiments.scenario.document import EVENTS_MAX as SCENARIO_EVENTS_MAX
+from robot_runtime.experiments.sweep.document import PARAMETERS_MAX as SWEPT_MAX
+from robot_runtime.experiments.sweep.parameter import COUNT_MAX as VALUES_MAX
 from server.analysis.flags import FLAGS_MAX
 from server.analysis.schemas import SESSIONS_MAX
 from server.analysis.segment import SEGMENTS_MAX
@@ -18,6 +20,7 @@ from server.analysis.summary import NAMES_MAX
 from server.analysis.track import POINTS_MAX, TRACKS_MAX
 from server.app import create_app
 from server.driving.changes import SHOWN
+from server.driving.profiles import PARAMETERS_MAX, PROFILES_MAX
 from server.features.comm_tests.runs import LISTED_MOST as TESTS_LISTED
 from server.features.doors.house import CLIENTS_MAX
 from server.features.doors.subscriptions import SUBSCRIPTIONS_MAX
@@ -28,11 +31,12 @@ from server.features.missions.library import MISSIONS_MAX, VERSIONS_MAX
 from server.features.missions.past_runs import RUNS_MAX
 from server.features.missions.schemas import SEEDS_MAX
 from server.features.panels.scripts import PANELS_SHOWN
-from server.features.parameters.profiles import PROFILES_MAX
-from server.features.parameters.schemas import PARAMETERS_MAX
 from server.features.people.audit import LISTED_MOST as ENTRIES_LISTED
 from server.features.scenarios.library import SCENARIOS_MAX
 from server.features.scenarios.runs import QUEUE_MAX
+from server.features.sweeps.library import RUNS_LISTED_MAX
+from server.features.sweeps.results import REASONS_MAX, VARIANTS_SHOWN
+from server.features.sweeps.store import LISTED_MAX as SWEEPS_LISTED
 from server.features.tuning.runs import LISTED_MOST as RUNS_LISTED
 from server.http.sign_in.devices import DEVICES_MAX, LINKS_MAX
 from server.library.crafts import CRAFTS_MAX
@@ -123,6 +127,16 @@ LIMITS = {
     "/api/sessions/{session}/timeline events": SHOWN_MAX,
     "/api/sessions/{session}/timeline holes": SHOWN_MAX,
     "/api/sessions/{session}/timeline markers": SHOWN_MAX,
+    "/api/sweeps": SWEEPS_LISTED,
+    "/api/sweeps best values": SWEPT_MAX,
+    "/api/sweeps parameters": SWEPT_MAX,
+    "/api/sweeps/{sweep} failures": REASONS_MAX,
+    "/api/sweeps/{sweep} parameters": SWEPT_MAX,
+    "/api/sweeps/{sweep} parameters values": VALUES_MAX,
+    "/api/sweeps/{sweep} variants": VARIANTS_SHOWN,
+    "/api/sweeps/{sweep} variants values": SWEPT_MAX,
+    "/api/sweeps/{sweep}/runs": RUNS_LISTED_MAX,
+    "/api/sweeps/{sweep}/runs values": SWEPT_MAX,
     "/api/tags": TAGS_SHOWN,
     "/api/tuning/runs runs": RUNS_LISTED,
     "/api/vision configured actions": COLOURS_MAX + MARKERS_MAX,
@@ -188,6 +202,10 @@ FIXED = {
     "/api/sessions/{session}/story/figures meanings",
     "/api/sessions/{session}/story/figures segments",
     "/api/sessions/{session}/story/figures whole",
+    "/api/sweeps/{sweep} figures",
+    "/api/sweeps/{sweep} limits",
+    "/api/sweeps/{sweep} variants figures",
+    "/api/sweeps/{sweep}/runs figures",
     "/api/tuning/runs figures",
     "/api/tuning/runs runs cycle remarks",
     "/api/tuning/runs runs figures",

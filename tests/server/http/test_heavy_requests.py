@@ -65,6 +65,7 @@ def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -
         *("getSession", "getTimeline", "getThumbnail", "listSessionMissions", "listMissionRuns"),
         *("listSessionSnapshots", "getSnapshot"),
         *("getFilm", "getFilmPart"),
+        *("checkSweep", "startSweep", "getSweep", "listSweepRuns", "downloadSweepTable"),
         "predictStep",
     }
 

@@ -9,7 +9,7 @@ import pytest
 
 from robot_runtime.experiments.identification import fit
 from server.cli import main
-from server.features.scenarios.library import _shipped
+from server.library.scenarios import shipped_scenarios
 from server.platform.settings import DataFolder
 
 CRAFT = """
@@ -40,7 +40,7 @@ def record(folder: Path) -> RecordedTrials:
     (folder / "other.toml").write_text(CRAFT)
     (folder / "swum.toml").write_text('[craft]\nfile = "other.toml"\n')
     (folder / "robot.toml").write_text("")
-    text = _shipped()["sea_trial"].replace("duration = 120", f"duration = {SECONDS}")
+    text = shipped_scenarios()["sea_trial"].replace("duration = 120", f"duration = {SECONDS}")
     head, *events = text.split("[[events]]")
     early = [event for event in events if float(event.split("at = ")[1].split()[0]) < SECONDS]
     data = DataFolder(folder / "data")

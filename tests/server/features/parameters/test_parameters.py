@@ -9,7 +9,7 @@ import pytest
 
 from robot_runtime.contract.commands import ParametersCommand, SteeringCommand
 from server.driving.changes import Changes, Send
-from server.features.parameters.profiles import ProfileError, read_file
+from server.driving.profiles import ProfileError, read_file
 from server.health.monitor import HealthMonitor
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError

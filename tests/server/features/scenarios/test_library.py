@@ -6,7 +6,8 @@ import pytest
 
 from robot_runtime.errors import RefusedError
 from server.features.scenarios import library
-from server.features.scenarios.library import SHIPPED, keep_scenario, list_scenarios
+from server.features.scenarios.library import keep_scenario, list_scenarios
+from server.library.scenarios import SHIPPED
 
 
 def test_one_more_scenario_than_there_may_be_is_refused_and_a_stored_one_may_change(

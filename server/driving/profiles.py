@@ -5,9 +5,9 @@ import re
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from time import time
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import ConfigDict, ValidationError
+from pydantic import ConfigDict, Field, StringConstraints, ValidationError
 from sqlalchemy import Connection, delete
 from sqlmodel import col, select
 
@@ -15,7 +15,6 @@ from robot_runtime.contract.text_input import TextError, read_json
 from robot_runtime.errors import RefusedError
 from server import VERSION
 from server.driving.schemas import Value
-from server.features.parameters.schemas import Profile, ProfileName, ProfileNote, Values
 from server.platform.errors import InvalidError, NotFoundError
 from server.platform.models import ProfileRow
 from server.platform.schema_base import Schema
@@ -24,6 +23,23 @@ from server.platform.store import Store, insert_row
 FORMAT = 1
 """The format of profiles' files; a file of another format is refused."""
 PROFILES_MAX = 500
+PARAMETERS_MAX = 1000
+
+ParameterName = Annotated[str, StringConstraints(min_length=1, max_length=100)]
+Values = Annotated[dict[ParameterName, Value], Field(max_length=PARAMETERS_MAX)]
+ProfileName = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=100)]
+ProfileNote = Annotated[str, StringConstraints(strip_whitespace=True, max_length=1000)]
+
+
+class Profile(Schema):
+    """Parameters saved under a name."""
+
+    id: int
+    name: str
+    note: str
+    author: str = Field(description="the person who saved it; empty where it is not known")
+    saved: datetime = Field(description="UTC")
+    values: dict[str, Value]
 
 
 class UnknownProfileError(NotFoundError):

@@ -1,0 +1,130 @@
+"""Sweeps: their overhead over the scenarios themselves, and the gain of a second worker; pool and Dask."""
+
+import time
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from importlib.resources import files
+
+from robot_runtime.experiments import scenario
+from robot_runtime.experiments.scenario.boards import BUILD, boards
+from robot_runtime.experiments.scenario.document import read_scenario_table
+from robot_runtime.experiments.scenario.run import ScenarioRun
+from robot_runtime.experiments.sweep.document import Sweep
+from server.features.sweeps.engine import SweepEngine
+from server.features.sweeps.executors import LocalWorkers, Workers
+from server.features.sweeps.order import reopen
+from server.features.sweeps.run_task import RunTask, WorkerIdentity, identify, plan_task
+from server.features.sweeps.simulation import probe
+
+_TEXT = """
+format = 1
+name = "bench"
+scenario = "hover_in_a_current"
+seeds = 2
+[vary]
+"control.gains.pid.kp" = [1.5, 3.0, 4.5]
+"control.gains.pid.kd" = [1.0, 2.0]
+"""
+
+
+class _Deaf:
+    def blocks(self, data: bytes) -> None:
+        """Ignore the blocks."""
+
+    def event(self, event: str, **more: object) -> None:
+        """Ignore the event."""
+
+
+def measure() -> dict[str, float]:
+    """Measure twelve runs of 60 s one by one, then as a sweep with one and two workers."""
+    sweep, identity = _read(), identify(BUILD)
+    tasks = _plan(sweep, identity)
+    _one_by_one(tasks[:1])
+    alone = _one_by_one(tasks)
+    single, double = (_sweep(sweep, identity, LocalWorkers(count)) for count in (1, 2))
+    with _cluster(1) as workers:
+        dask_one = _sweep(sweep, identity, workers)
+    with _cluster(2) as workers:
+        dask_two = _sweep(sweep, identity, workers)
+    return {
+        "sweep.overhead_percent": 100 * (single / alone - 1),
+        "sweep.speed_up_two_x": single / double,
+        "sweep.dask_overhead_percent": 100 * (dask_one / alone - 1),
+        "sweep.dask_speed_up_two_x": dask_one / dask_two,
+    }
+
+
+def _read() -> Sweep:
+    text = (files(scenario) / "shipped" / "hover_in_a_current.toml").read_text(encoding="utf-8")
+    return reopen(_TEXT, text)
+
+
+def _plan(sweep: Sweep, identity: WorkerIdentity) -> list[RunTask]:
+    return [
+        plan_task(sweep, run, "", identity)
+        for variant, values in enumerate(sweep.grid(), 1)
+        for run in sweep.runs_of(variant, values)
+    ]
+
+
+def _one_by_one(tasks: list[RunTask]) -> float:
+    """Return the s that these scenarios take by themselves, without any figures."""
+    began = time.monotonic()
+    for task in tasks:
+        ScenarioRun(read_scenario_table(dict(task.table)), boards()["host"], _Deaf()).perform(lambda _: {})
+    return time.monotonic() - began
+
+
+def _sweep(sweep: Sweep, identity: WorkerIdentity, workers: Workers) -> float:
+    """Return the s that the sweep takes with workers that are there already."""
+    ready = _ReadyWorkers(workers)
+    began = time.monotonic()
+    done = [*SweepEngine(sweep, "", identity, lambda _: {}, ready).perform()]
+    seconds = time.monotonic() - began
+    assert len(done) == sweep.runs
+    ready.close()
+    return seconds
+
+
+class _ReadyWorkers:
+    """Workers whose processes have loaded everything."""
+
+    def __init__(self, workers: Workers) -> None:
+        self._workers = workers
+        self.alone = workers.alone
+        self._executor = workers.open()
+        while not workers.count:
+            time.sleep(0.1)
+        warmed = [self._executor.submit(probe) for _ in range(4 * workers.count)]
+        for future in warmed:
+            future.result()
+
+    @property
+    def count(self) -> int:
+        return self._workers.count
+
+    def open(self) -> Executor:
+        """Return the executor that is there."""
+        return self._executor
+
+    def close(self) -> None:
+        """End it."""
+        self._workers.close()
+
+
+@contextmanager
+def _cluster(count: int) -> Iterator[Workers]:
+    """Yield a cluster of this computer, with processes as `mucat worker` starts them."""
+    from distributed import LocalCluster
+
+    from server.features.sweeps.cluster import ClusterWorkers, name_identity
+
+    with LocalCluster(
+        n_workers=count,
+        threads_per_worker=1,
+        dashboard_address=None,
+        memory_limit=0,
+        resources={name_identity(probe()): 1},
+    ) as cluster:
+        yield ClusterWorkers(cluster.scheduler_address, "", identify(BUILD), lambda _: None)

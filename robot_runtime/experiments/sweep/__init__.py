@@ -1,0 +1,1 @@
+"""Sweeps: one scenario with varied entries, each variant with the same seeds."""
