@@ -38,7 +38,7 @@ def read_certificates(scheduler: str, folder: str) -> Security | None:
         raise RefusedError(f"The scheduler is reached with certificates; {', '.join(missing)} is not there.")
     roles = {
         f"tls_{role}_{part}": str(files[name])
-        for role in ("client", "worker")
+        for role in ("client", "worker", "scheduler")
         for part, name in (("cert", "certificate"), ("key", "key"))
     }
     return Security(tls_ca_file=str(files["ca"]), require_encryption=True, **roles)
