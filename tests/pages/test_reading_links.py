@@ -27,7 +27,8 @@ def test_a_link_shows_its_session_to_who_is_not_signed_in_until_it_is_ended(
         expect(reader.get_by_text(re.compile(f"You are reading session {session} until"))).to_be_visible()
         expect(reader.get_by_role("heading", name="lent to a colleague")).to_be_visible()
         assert "read=" not in reader.url
-        expect(reader.get_by_role("button", name="Edit", exact=True, disabled=False)).to_have_count(0)
+        # A flag of the dive may have these letters in it, too: "robot.toml was edited".
+        expect(reader.get_by_role("button", name=re.compile("^Edit"))).to_have_count(0)
         expect(reader.get_by_role("button", name="STOP")).to_have_count(0)
         reader.get_by_role("link", name="Replay").click()
         expect(reader.get_by_role("heading", name=re.compile("^Replay"))).to_be_visible()
