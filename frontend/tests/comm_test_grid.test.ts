@@ -3,7 +3,8 @@ import { compare, summarise, type Column } from '../src/pages/comm_tests/compari
 import { drawFigure, type FigureCell } from '../src/pages/comm_tests/figure';
 import { facetColumns, gridOf, placesOf } from '../src/pages/comm_tests/grid';
 import { differencePaint, ratePaint } from '../src/pages/comm_tests/scale';
-import { countCauses, differenceText, remainingWords, roughly } from '../src/pages/comm_tests/words';
+import { countCauses, differenceText } from '../src/pages/comm_tests/words';
+import { remainingWords, roughly } from '../src/parts/remaining';
 
 const place = (baud: number, arduino_delay: number, pi_delay: number) => ({ baud, arduino_delay, pi_delay });
 const column = (id: string, cells: Column['cells']): Column => ({ id, title: id, about: '', cells });

@@ -44,6 +44,7 @@ export class LiveFeed {
     health: ({ parts }) => (this.live.parts = parts),
     session: ({ recording }) => (this.live.recording = recording),
     scenario: (state) => (this.live.scenario = state),
+    sweeps: ({ sweeps }) => (this.live.sweeps = sweeps),
     tuning: (state) => (this.live.tuning = state),
     comm_test: ({ active, cell }) => this.live.commTest.take(active, cell),
     alarms: ({ alarms }) => (this.live.serverAlarms = alarms),
@@ -123,6 +124,7 @@ export class LiveFeed {
     this.#wasOpen = true;
     this.#progress.reconnect();
     live.commTest.reconnect();
+    live.sweeps = [];
     live.gaps.restart();
     if (live.watched.length > 0) this.#watch();
   }

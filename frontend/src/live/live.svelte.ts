@@ -9,7 +9,7 @@ import type { Control } from './control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
-import type { PartHealth, ScenarioState, Session, TuningState } from '../api';
+import type { PartHealth, ScenarioState, Session, SweepSummary, TuningState } from '../api';
 import type { Hello } from './messages';
 import { createNewest } from './newest.svelte';
 import { Pace } from './pace';
@@ -93,6 +93,8 @@ export class Live {
   readonly commTest = new CommTestWatch();
   /** null until the server has said whether a scenario runs */
   scenario = $state.raw<ScenarioState | null>(null);
+  /** those that wait or run, and the one that ended last */
+  sweeps = $state.raw<readonly SweepSummary[]>([]);
   /** null until the server has said whether an experiment runs */
   tuning = $state.raw<TuningState | null>(null);
 

@@ -1,5 +1,5 @@
 /** The text messages of the live socket. */
-import type { Cell, ControlState, PartHealth, Role, ScenarioState, Session, TuningState } from '../api';
+import type { Cell, ControlState, PartHealth, Role, ScenarioState, Session, SweepSummary, TuningState } from '../api';
 import type { Alarm } from '../generated/topics';
 import type { Instant } from './clock';
 
@@ -50,6 +50,7 @@ export interface Messages {
   readonly session: { readonly recording: Session | null };
   readonly comm_test: { readonly active: CommTestActive | null; readonly cell: (Cell & { readonly run: number }) | null };
   readonly scenario: ScenarioState;
+  readonly sweeps: { readonly sweeps: readonly SweepSummary[] };
   readonly tuning: TuningState;
   readonly control: ControlState;
   readonly alarms: { readonly alarms: Alarm[] };

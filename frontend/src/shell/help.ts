@@ -11,6 +11,7 @@ const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Record<Page
   'tune/vision': 'use/vision/',
   missions: 'use/missions/',
   scenarios: 'use/scenarios/',
+  'scenarios/sweeps': 'use/sweeps/',
   'comm-tests': 'use/comm-tests/',
   sessions: 'use/sessions/',
   'sessions/compare': 'use/compare/',

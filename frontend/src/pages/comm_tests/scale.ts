@@ -1,4 +1,5 @@
 /** Colours of cells. A rate has the same one on every chart and in both themes. */
+import { mixedPaint } from '../../charts/shades';
 import type { Paint } from '../../parts/table';
 
 /** Viridis of matplotlib, 0 to 1: told apart by colour-blind eyes, and growing lighter all the way. */
@@ -6,49 +7,14 @@ const VIRIDIS = [
   '#440154', '#482475', '#414487', '#355f8d', '#2a788e', '#21918c', '#22a884', '#44bf70', '#7ad151', '#bddf26', '#fde725',
 ] as const;
 
-type Rgb = readonly [number, number, number];
-
-/** With black and white one of the two always reaches a contrast of 4.5:1. */
-const INK_DARK = '#000000';
-const INK_LIGHT = '#ffffff';
-
 /** Of a rate from 0 to 1. */
 export function ratePaint(rate: number): Paint {
-  return paint(between(VIRIDIS, rate));
+  return mixedPaint(VIRIDIS, rate);
 }
 
 /** Of a difference from -1 to 1: `worse` at -1, `equal` at 0, `better` at 1 (hex colours). */
 export function differencePaint(difference: number, worse: string, equal: string, better: string): Paint {
-  return paint(between([worse, equal, better], (difference + 1) / 2));
+  return mixedPaint([worse, equal, better], (difference + 1) / 2);
 }
 
 export const RATE_GRADIENT = `linear-gradient(to right, ${VIRIDIS.join(', ')})`;
-
-function between(stops: readonly string[], share: number): Rgb {
-  const at = Math.min(1, Math.max(0, share)) * (stops.length - 1);
-  const low = Math.min(Math.floor(at), stops.length - 2);
-  const [from, to] = [rgb(stops[low] ?? ''), rgb(stops[low + 1] ?? '')];
-  const mix = (channel: 0 | 1 | 2) => Math.round(from[channel] + (to[channel] - from[channel]) * (at - low));
-  return [mix(0), mix(1), mix(2)];
-}
-
-function rgb(hex: string): Rgb {
-  const channel = (at: number) => parseInt(hex.slice(at, at + 2), 16);
-  return [channel(1), channel(3), channel(5)];
-}
-
-function paint(colour: Rgb): Paint {
-  const light = luminance(colour);
-  const onDark = (luminance(rgb(INK_LIGHT)) + 0.05) / (light + 0.05);
-  const onLight = (light + 0.05) / (luminance(rgb(INK_DARK)) + 0.05);
-  return { fill: `rgb(${colour.join(' ')})`, ink: onDark > onLight ? INK_LIGHT : INK_DARK };
-}
-
-/** Relative luminance, as in WCAG 2. */
-function luminance([red, green, blue]: Rgb): number {
-  const linear = (value: number) => {
-    const share = value / 255;
-    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
-  };
-  return 0.2126 * linear(red) + 0.7152 * linear(green) + 0.0722 * linear(blue);
-}

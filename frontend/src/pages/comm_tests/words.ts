@@ -10,21 +10,6 @@ export function aboutRun(run: Pick<CommTestSummary, 'framing' | 'direction'>): s
   return texts.method(FRAMINGS[run.framing]?.name ?? run.framing, texts.directions[run.direction].name);
 }
 
-/** A time rounded for reading: about 40 s, about 3 min, about 1 h 10 min. */
-export function roughly(seconds: number): string {
-  if (seconds < 55) return texts.progress.aboutSeconds(Math.max(5, Math.ceil(seconds / 5) * 5));
-  const minutes = Math.max(1, Math.round(seconds / 60));
-  if (minutes < 60) return texts.progress.aboutMinutes(minutes);
-  return texts.progress.aboutHours(Math.floor(minutes / 60), minutes % 60);
-}
-
-/** The remaining time of a test, of which `remaining` s were left `ago` s ago. */
-export function remainingWords(remaining: number | null, ago: number): string {
-  if (remaining === null) return texts.progress.unknown;
-  const left = remaining - ago;
-  return left < 1 ? texts.progress.moment : roughly(left);
-}
-
 /** A rate as the thesis prints it. */
 export function rateText(rate: number | null | undefined): string {
   return rate === null || rate === undefined ? MISSING : rate.toFixed(2);

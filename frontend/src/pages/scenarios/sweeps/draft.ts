@@ -1,0 +1,3 @@
+import { Draft } from '../../../parts/draft';
+
+export const sweepDraft = new Draft('mucat-sweep');

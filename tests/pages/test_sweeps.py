@@ -1,0 +1,129 @@
+"""The page of sweeps: list, plan, results and what is made of them; the sweeps are stored, none runs."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.browser.axe import AXE, faults_in_both_themes
+from tests.browser.code import write_code
+from tests.browser.opening import DESKTOP, PHONE, opened_page, signed_in
+from tests.pages.dive_site import DiveSite, recorded_site
+from tests.pages.stored_sweeps import (
+    BEST,
+    GRID,
+    KD,
+    KP,
+    LINE,
+    NEVER_ARMED,
+    WITHOUT_FIGURES,
+    store_sweeps,
+    text_of,
+)
+
+TOML = "Sweep as TOML"
+
+
+@pytest.fixture(scope="module")
+def sweeps(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DiveSite]:
+    """A server with three sweeps, none of which runs."""
+    with recorded_site(tmp_path_factory.mktemp("data"), store_sweeps) as site:
+        yield site
+
+
+@pytest.fixture(params=[DESKTOP, PHONE], ids=["desktop", "phone"])
+def page(request: pytest.FixtureRequest, browser: Browser, sweeps: DiveSite) -> Iterator[Page]:
+    with opened_page(browser, sweeps, signed_in(browser, sweeps), request.param) as page:
+        yield page
+
+
+def overflow(page: Page) -> int:
+    return int(page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth"))
+
+
+def test_a_grid_is_read_by_colour_by_keys_and_as_a_table(page: Page, sweeps: DiveSite) -> None:
+    page.goto(f"{sweeps.url}/#/scenarios")
+    page.get_by_role("link", name="Sweeps", exact=True).click()
+    page.get_by_role("link", name="PID in a current").click()
+    best = page.get_by_role("gridcell", name="kp 10, kd 2: 0.0210 m, best")
+    expect(best).to_have_attribute("aria-selected", "true")
+    panel = page.get_by_role("region", name=f"Best: variant {BEST}")
+    expect(panel).to_contain_text("Better than the next, variant")
+    expect(panel.get_by_role("row")).to_have_count(4)
+
+    # By keys, and the address follows; the figure of a variant without one is said in words.
+    best.focus()
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("gridcell", name="kp 10, kd 4")).to_have_attribute("aria-selected", "true")
+    expect(page).to_have_url(re.compile("variant=6"))
+    page.get_by_role("gridcell", name="kp 30, kd 4: all runs failed").click()
+    failed = page.get_by_role("region", name=f"Variant {WITHOUT_FIGURES}")
+    expect(failed).to_contain_text(NEVER_ARMED)
+    expect(page.get_by_role("region", name="Failed runs")).to_contain_text(NEVER_ARMED)
+    failed.get_by_role("button", name="Show the best").click()
+    expect(panel).to_be_visible()
+
+    page.get_by_label("Figure", exact=True).select_option("Overshoot")
+    page.get_by_label("Across", exact=True).select_option("kd")
+    expect(page).to_have_url(re.compile(f"figure=overshoot.*x={KD}"))
+    table = page.get_by_role("table", name="Variants")
+    expect(table.get_by_role("row")).to_have_count(13)
+    table.get_by_role("radio", name="Show variant 1", exact=True).check()
+    page.reload()
+    expect(page.get_by_role("region", name="Variant 1", exact=True)).to_be_visible()
+    expect(page.get_by_label("Up", exact=True)).to_have_value(KP)
+    assert overflow(page) == 0
+
+
+def test_one_gain_is_a_line_and_its_gains_become_a_profile(page: Page, sweeps: DiveSite) -> None:
+    page.goto(f"{sweeps.url}/#/scenarios/sweeps/{LINE}")
+    expect(page.get_by_role("img", name="RMSE by kp")).to_be_visible()
+    expect(page.locator(".js-plotly-plot .point")).to_have_count(16)
+    page.get_by_role("button", name="Save these gains as a profile").click()
+    page.get_by_label("Name of the profile").fill("calm")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text("Saved as “calm”.")).to_be_visible()
+    (saved,) = [one for one in sweeps.api.get("/profiles").json() if one["name"] == "calm"]
+    sweeps.api.delete(f"/profiles/{saved['id']}").raise_for_status()
+    assert overflow(page) == 0
+
+
+def test_a_sweep_is_planned_and_its_problems_stand_in_their_lines(page: Page, sweeps: DiveSite) -> None:
+    page.goto(f"{sweeps.url}/#/scenarios/sweeps/new")
+    box = page.get_by_role("textbox", name=TOML)
+    expect(box).to_contain_text("[vary]")
+    start = page.get_by_role("button", name="Start the sweep")
+    expect(start).to_be_enabled()
+    write_code(box, text_of("A plan", kp=(5.0, 10.0), kd=(1.0, 2.0)))
+    plan = page.get_by_role("region", name="To be done")
+    expect(plan).to_contain_text("12 runs")
+    expect(plan).to_contain_text("4 variants × 3 seeds")
+    write_code(box, text_of("A plan", kp=(5.0, 10.0), kpp=(1.0,)))
+    expect(page.get_by_role("list", name="Problems")).to_contain_text("kpp")
+    expect(start).to_be_disabled()
+    page.get_by_label("Begin with").select_option("figure_14")
+    page.get_by_role("button", name="Use", exact=True).click()
+    expect(box).to_contain_text("figure_14")
+    page.get_by_role("button", name="Undo").click()
+    expect(box).to_contain_text("kpp")
+    assert overflow(page) == 0
+
+
+def test_no_view_of_sweeps_has_a_serious_violation(page: Page, sweeps: DiveSite) -> None:
+    page.context.add_init_script(path=AXE)
+    for address in ("", "/new", f"/{GRID}", f"/{LINE}", f"/{GRID}?variant={WITHOUT_FIGURES}"):
+        page.goto(f"{sweeps.url}/#/scenarios/sweeps{address}")
+        page.reload()
+        expect(page.get_by_text(re.compile("Loading…|Checking…"))).to_have_count(0)
+        expect(page.get_by_role("heading", level=1)).to_be_visible()
+        assert faults_in_both_themes(page) == [], address
+
+
+def test_without_a_sweep_a_scenario_is_offered_to_begin_with(any_page: Page, site: DiveSite) -> None:
+    any_page.goto(f"{site.url}/#/scenarios/sweeps")
+    expect(any_page.get_by_text("No sweep yet")).to_be_visible()
+    any_page.get_by_label("Scenario", exact=True).select_option("Hover in a current")
+    any_page.get_by_role("button", name="Begin").click()
+    expect(any_page.get_by_role("textbox", name=TOML)).to_contain_text("hover_in_a_current")
