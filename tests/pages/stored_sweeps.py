@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any
 
 from server.analysis.definitions import RUN_FIGURES
-from server.features.sweeps.run_task import Identity, RunOutcome
+from server.features.sweeps.run_task import RunOutcome, WorkerIdentity
 from server.features.sweeps.store import StoredRun, SweepStore
 from server.platform.models import SweepRow
 from server.platform.settings import Settings
@@ -25,7 +25,7 @@ SEEDS = (1, 2, 3)
 NEVER_ARMED = "The robot was never armed."
 
 
-def store_sweeps(store: Store, settings: Settings) -> None:
+def store_sweeps(store: Store, _: Settings) -> None:
     """Store a grid of two gains, a sweep of one gain, and one that was cancelled half way."""
     asyncio.run(_store_all(SweepStore(store)))
 
@@ -82,7 +82,7 @@ async def _add(
     )
     failed = sum(bool(run.outcome.problem) for run in done)
     progress: dict[str, Any] = {"done": len(done), "failed": failed}
-    await sweeps.keep(number, Identity("firmware", "software"), done, progress)
+    await sweeps.keep(number, WorkerIdentity("firmware", "software"), done, progress)
 
 
 def _runs(values: list[tuple[float, ...]], fails: int | None = None) -> Iterator[StoredRun]:
