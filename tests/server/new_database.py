@@ -1,4 +1,4 @@
-"""The database of a server's first start, created once and copied: creation takes a quarter of a second."""
+"""The database of a server's first start, made once and copied."""
 
 import atexit
 import shutil

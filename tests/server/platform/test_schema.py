@@ -51,6 +51,21 @@ def test_a_new_database_is_made_once_and_without_a_copy(settings: Settings) -> N
     assert not settings.data.backups.exists()
 
 
+def test_a_new_database_is_what_the_migrations_make(settings: Settings) -> None:
+    def dump() -> list[str]:
+        with closing(sqlite3.connect(settings.data.database)) as database:
+            # A table that was made anew has a line that says that no number was given yet.
+            assert not any(database.execute("SELECT seq FROM sqlite_sequence WHERE seq != 0"))
+            assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
+            return [line for line in database.iterdump() if "sqlite_sequence" not in line]
+
+    schema._upgrade(settings.data.database)
+    migrated = dump()
+    settings.data.database.unlink()
+    schema.prepare(settings.data)
+    assert dump() == migrated
+
+
 def test_an_older_database_is_copied_before_it_is_upgraded(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -105,7 +120,7 @@ def test_a_full_disk_is_reported_in_a_sentence(settings: Settings, monkeypatch: 
     def fail(_: Path) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(schema, "_upgrade", fail)
+    monkeypatch.setattr(schema, "_create", fail)
     with pytest.raises(SetupError, match=r"the disk that holds .* is full\. Free some space"):
         schema.prepare(settings.data)
 
