@@ -4,7 +4,7 @@ import zipfile
 
 import pytest
 from mcap.reader import make_reader
-from playwright.sync_api import Page, ViewportSize, expect
+from playwright.sync_api import Page, Route, ViewportSize, expect
 
 from tests.browser.opening import DESKTOP, PHONE
 from tests.browser.pages import SESSIONS, fill
@@ -54,5 +54,30 @@ def test_a_person_says_which_spreadsheet_reads_the_table(page: Page, site: Site,
     assert head.startswith("\ufefftime [s];utc;")
     form.get_by_role("radio", name="Excel workbook").check()
     expect(choice).to_be_hidden()
+    form.get_by_role("button", name="Delete").click()
+    expect(form.get_by_role("link", name="Download")).to_have_count(0)
+
+
+def test_a_file_is_followed_to_its_end_where_the_list_of_files_could_not_be_read(
+    page: Page, site: Site
+) -> None:
+    fill(site)
+    numbers = {session["name"]: session["id"] for session in site.api.get("/sessions").json()}
+    page.goto(f"{site.url}/#/sessions/{numbers[SESSIONS[0]]}/data")
+    form = page.get_by_role("region", name="Export")
+    expect(form.get_by_role("button", name="Create file")).to_be_visible()
+    asked: list[str] = []
+
+    def fail_once(route: Route) -> None:
+        if route.request.method == "GET" and not asked:
+            asked.append(route.request.url)
+            route.abort()
+        else:
+            route.fallback()
+
+    page.route("**/api/exports", fail_once)
+    form.get_by_role("button", name="Create file").click()
+    expect(form.get_by_role("link", name="Download")).to_be_visible()
+    assert asked
     form.get_by_role("button", name="Delete").click()
     expect(form.get_by_role("link", name="Download")).to_have_count(0)
