@@ -54,6 +54,21 @@ def test_the_heading_of_the_next_page_gets_the_focus(page: Page, name: str) -> N
     expect(page.get_by_role("heading", level=1, name=name)).to_be_focused()
 
 
+@pytest.mark.parametrize("width", [320, 375, 390])
+def test_every_name_of_a_page_is_in_view_on_the_narrowest_phones(
+    browser: Browser, site: Site, cookies: StorageState, width: int
+) -> None:
+    size: ViewportSize = {"width": width, "height": 640}
+    context = browser.new_context(viewport=size, storage_state=cookies, has_touch=True)
+    page = context.new_page()
+    page.goto(site.first)
+    pages = page.get_by_role("navigation", name="Pages")
+    for link in pages.get_by_role("link").all():
+        expect(link).to_be_in_viewport(ratio=1)
+    assert pages.evaluate("(one) => one.scrollWidth - one.clientWidth") == 0
+    context.close()
+
+
 def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, site: Site) -> None:
     page.goto(f"{site.url}/#/tune/bench")
     tab = page.get_by_role("navigation", name="Tuning views").get_by_role("link", name="Parameters")
