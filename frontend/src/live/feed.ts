@@ -43,6 +43,7 @@ export class LiveFeed {
     control: (state) => this.#control.hear(state),
     health: ({ parts }) => (this.live.parts = parts),
     session: ({ recording }) => (this.live.recording = recording),
+    summary: ({ session }) => (this.live.summarised = session),
     scenario: (state) => (this.live.scenario = state),
     sweeps: ({ sweeps }) => (this.live.sweeps = sweeps),
     tuning: (state) => (this.live.tuning = state),

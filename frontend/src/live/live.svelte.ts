@@ -67,6 +67,8 @@ export class Live {
   outdated = $state(false);
   parts = $state.raw<readonly PartHealth[]>([]);
   recording = $state.raw<Session | null>(null);
+  /** the session whose summary was made last; null before the server has made one */
+  summarised = $state<number | null>(null);
   /** the newest document of each topic */
   /** those that may be of the picture that is shown, in order of time; of the robot itself the newest alone */
   detections = $state.raw<readonly Documents['detection'][]>([]);

@@ -48,6 +48,7 @@ export interface Messages {
   readonly hello: Hello;
   readonly health: { readonly parts: PartHealth[] };
   readonly session: { readonly recording: Session | null };
+  readonly summary: { readonly session: number };
   readonly comm_test: { readonly active: CommTestActive | null; readonly cell: (Cell & { readonly run: number }) | null };
   readonly scenario: ScenarioState;
   readonly sweeps: { readonly sweeps: readonly SweepSummary[] };

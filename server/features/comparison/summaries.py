@@ -16,6 +16,7 @@ from server.platform.store import Store, StoreError
 from server.recording.recorder import Recorder
 from server.recording.schemas import SessionSummary
 from server.recording.session import REAL_ORIGINS, has_default_name
+from server.stream.hub import Hub
 
 log = logging.getLogger(__name__)
 
@@ -26,12 +27,16 @@ PERIOD_SECONDS = 10.0
 
 
 class SummaryWorker:
-    """Makes the summaries of sessions that have ended, while nothing is recorded: reading them takes time."""
+    """Makes the summaries of sessions that have ended, while nothing is recorded: reading them takes time.
 
-    def __init__(self, comparison: ComparisonWorker, store: Store, recorder: Recorder) -> None:
+    The pages are told of each.
+    """
+
+    def __init__(self, comparison: ComparisonWorker, store: Store, recorder: Recorder, hub: Hub) -> None:
         self._comparison = comparison
         self._store = store
         self._recorder = recorder
+        self._hub = hub
         self._failed: set[int] = set()
         """Not tried again before the next start."""
 
@@ -65,6 +70,7 @@ class SummaryWorker:
                 continue
             summary = SessionSummary.model_validate_json(answer)
             await self._store.write(partial(_store, session=session, summary=summary))
+            self._hub.notify({"op": "summary", "session": session})
 
     def _find(self) -> int | None:
         made = select(SummaryRow.session_id)

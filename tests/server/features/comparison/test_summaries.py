@@ -1,6 +1,7 @@
 """Summaries: made once a recording has ended, beside the server; a session without a name gets one."""
 
 from datetime import UTC, datetime
+from typing import Any
 
 import pytest
 
@@ -9,6 +10,7 @@ from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.library.catalogue import Catalogue
 from server.platform.settings import Settings
 from server.recording.session import default_name, has_default_name
+from server.stream.hub import Hub
 from tests.server.analysis.dives import dive, record
 from tests.server.new_database import new_store
 from tests.server.serving import Served
@@ -37,15 +39,18 @@ async def test_every_session_gets_a_summary_and_only_a_nameless_one_a_name(
     assert (await served.api.get("/sessions/controllers")).json() == ["PID"]
 
 
-async def test_a_summary_is_made_when_a_recording_ends(
+async def test_a_summary_is_made_when_a_recording_ends_and_pages_are_told(
     served: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(summaries, "TICK_SECONDS", 0.01)
+    sent: list[dict[str, Any]] = []
+    served.get(Hub).listeners.append(sent.append)
     session = (await served.api.post("/sessions", json={"name": "<b>&"})).json()
     await served.api.post(f"/sessions/{session['id']}/stop")
-    catalogue = served.get(Catalogue)
-    await until(lambda: catalogue.find(session["id"]).summary is not None, "the summary")
-    assert catalogue.find(session["id"]).name == "<b>&"
+    await until(lambda: {"op": "summary", "session": session["id"]} in sent, "word of the summary")
+    stored = served.get(Catalogue).find(session["id"])
+    assert stored.summary is not None
+    assert stored.name == "<b>&"
 
 
 async def test_what_cannot_be_read_is_not_read_again(
