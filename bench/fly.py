@@ -17,10 +17,11 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from bench import jitter
-from bench.real_robot import LiveViewer, pids
+from bench.real_robot import pids
 from robot_runtime.config import VisionConfig
 from robot_runtime.contract.topics import CAMERA, TIME
 from robot_runtime.transport.blocks import HEADER
+from server.features.bench.live_viewer import LiveViewer
 from server.features.bench.process_figures import core_percent
 from server.platform.settings import DataFolder
 from tests.shell import shell_headers
@@ -38,17 +39,16 @@ def measure() -> dict[str, float]:
         with Stack(data) as stack:
             session = stack.api.post("/sessions", json={"name": "bench"}).raise_for_status().json()["id"]
             stack.arm()
-            viewer = LiveViewer(stack)
             phases = {}
             figures: dict[str, float] = {}
-            time.sleep(_SETTLE)
-            phases["stream_off"] = _phase(stack, "off", figures)
-            watcher = _Watcher(stack)
-            time.sleep(_SETTLE)
-            watcher.begin()
-            phases["stream_on"] = _phase(stack, "on", figures)
-            pictures = watcher.end()
-            viewer.close()
+            with LiveViewer(DataFolder(data)):
+                time.sleep(_SETTLE)
+                phases["stream_off"] = _phase(stack, "off", figures)
+                watcher = _Watcher(stack)
+                time.sleep(_SETTLE)
+                watcher.begin()
+                phases["stream_on"] = _phase(stack, "on", figures)
+                pictures = watcher.end()
             stack.api.post("/robot/stop").raise_for_status()
             stack.api.post(f"/sessions/{session}/stop")
         figures |= jitter.figures(data, session, phases)

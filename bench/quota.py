@@ -9,20 +9,12 @@ import os
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager, suppress
-from itertools import pairwise
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from statistics import quantiles
 
-from sqlmodel import col, select
-
-from bench.real_robot import LiveViewer, RealRobot, pids
-from server.features.bench.process_figures import anonymous_mb, core_percent
-from server.library.content import Recording
-from server.platform.models import Gap
+from bench.real_robot import RealRobot
+from server.features.bench.measurement import LoadFigures, measure_load
 from server.platform.settings import DataFolder
-from server.platform.store import Reader
-from server.recording.session import find_row
 
 _CPU, _MEMORY = Path("/sys/fs/cgroup/cpu"), Path("/sys/fs/cgroup/memory")
 _PERIOD_US, _QUOTA_US = 25_000, 1_000
@@ -31,6 +23,7 @@ _SHARES = {"runtime": 10 * 1024, "server": 512}
 """As CPUWeight=1000 and 50 in the units."""
 _SETTLE, _SECONDS = 10.0, 60.0
 _TICK = 0.1
+"""s between two control ticks."""
 
 
 def measure() -> dict[str, float]:
@@ -42,53 +35,26 @@ def measure() -> dict[str, float]:
     figures: dict[str, float] = {}
     for name in ("natively", "quota"):
         with tempfile.TemporaryDirectory() as folder, RealRobot(Path(folder), profile="lean") as robot:
-            session = robot.api.post("/sessions", json={"name": "bench"}).raise_for_status().json()["id"]
+            robot.api.post("/sessions", json={"name": "bench"}).raise_for_status()
             robot.arm()
             with _groups(robot, limited=name == "quota"):
-                dive = _dive(robot)
+                time.sleep(_SETTLE)
+                dive = measure_load(DataFolder(robot.data), _SECONDS, lambda _: None)
             robot.api.post("/robot/stop").raise_for_status()
-            # The disarmed robot's recording is complete before it is read.
-            robot.api.post(f"/sessions/{session}/stop")
-            dive |= _recorded(robot.data, session, dive.pop("began"))
-        figures |= {f"quota.{figure}.{name}": value for figure, value in dive.items()}
+        figures |= {f"quota.{figure}.{name}": value for figure, value in _figures(dive).items()}
     return figures
 
 
-def _dive(robot: RealRobot) -> dict[str, float]:
-    viewer = LiveViewer(robot)
-    time.sleep(_SETTLE)
-    began = time.monotonic()
-    percent = core_percent(pids(robot.robot_processes), _SECONDS)
-    memory = sum(map(anonymous_mb, pids(robot.robot_processes).values()))
-    viewer.close()
+def _figures(dive: LoadFigures) -> dict[str, float]:
     return {
-        "began": began,
-        "cpu_percent": sum(percent.values()),
-        "anonymous_mb": memory,
-        "viewer_lost": viewer.lost,
-    }
-
-
-def _recorded(data: Path, session: int, began: float) -> dict[str, float]:
-    with closing(Reader(DataFolder(data).database)) as store:
-        row = find_row(store, session)
-        assert row is not None
-        times, _ = Recording(store, row).columns("control", [])
-        with store.read() as database:
-            missed = sum(database.exec(select(Gap.missed).where(col(Gap.session_id) == session)))
-        alarms = [
-            event
-            for event in Recording(store, row).documents("event", began, began + _SECONDS)
-            if event["severity"] == "alarm"
-        ]
-    ticks = [float(moment) for moment in times if began <= moment <= began + _SECONDS]
-    percentiles = quantiles([1000 * abs(b - a - _TICK) for a, b in pairwise(ticks)], n=100)
-    return {
-        "jitter_ms_p50": percentiles[49],
-        "jitter_ms_p99": percentiles[98],
-        "ticks_left_out": max(round(_SECONDS / _TICK) - len(ticks), 0),
-        "samples_lost": missed,
-        "alarms": len(alarms),
+        "cpu_percent": dive.robot_percent,
+        "anonymous_mb": dive.robot_mb,
+        "viewer_lost": dive.viewer_left_out,
+        "jitter_ms_p50": dive.jitter_ms[0],
+        "jitter_ms_p99": dive.jitter_ms[1],
+        "ticks_left_out": max(round(dive.seconds / _TICK) - dive.ticks, 0),
+        "samples_lost": dive.samples_lost,
+        "alarms": len(dive.alarms),
     }
 
 

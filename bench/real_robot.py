@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-import threading
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -11,8 +10,6 @@ from typing import Self
 
 import cv2
 import psutil
-from websockets.sync.client import connect
-from websockets.typing import Origin
 
 from robot_runtime.clock import SteadyClock
 from robot_runtime.places import BUILD
@@ -20,9 +17,8 @@ from robot_runtime.simulation.boards.emulator_process import EmulatorProcess
 from robot_runtime.simulation.boards.firmware import build_firmware, firmware_path
 from robot_runtime.vision.card_camera import CardCamera
 from robot_runtime.vision.cards import make_card
+from server.features.bench.robot_processes import OUTSIDE, find_processes
 from server.platform.settings import DataFolder
-from tests.browser.site import Site
-from tests.shell import shell_headers
 from tests.stack import Stack
 
 _BAUD = 250_000
@@ -71,9 +67,9 @@ class RealRobot(Stack):
 
     @property
     def robot_processes(self) -> dict[str, psutil.Process]:
-        """The processes of a robot, by name."""
-        parts = {name: self.part(name) for name in ("runtime", "vision")}
-        return {"runner": self.process, "server": self.server, **parts}
+        """The processes of a robot, by name: also the one that compares, where it is there."""
+        numbers = find_processes(self.process.pid, DataFolder(self.data).run)
+        return {name: psutil.Process(pid) for name, pid in numbers.items() if name not in OUTSIDE}
 
 
 @contextmanager
@@ -103,31 +99,3 @@ def store_picture(file: Path) -> None:
 def pids(processes: Mapping[str, psutil.Process]) -> dict[str, int]:
     """Return the process IDs, by the same names."""
     return {name: process.pid for name, process in processes.items()}
-
-
-class LiveViewer:
-    """A client that reads everything, as a page does."""
-
-    def __init__(self, site: Site) -> None:
-        self.bytes = 0
-        self.lost = 0
-        """Messages that say that samples were left out."""
-        self._socket = connect(
-            f"{site.url.replace('http', 'ws', 1)}/api/live",
-            origin=Origin(site.url),
-            additional_headers=shell_headers(DataFolder(site.data)),
-            max_size=None,
-            proxy=None,
-        )
-        self._thread = threading.Thread(target=self._read, daemon=True)
-        self._thread.start()
-
-    def close(self) -> None:
-        """Disconnect."""
-        self._socket.close()
-        self._thread.join()
-
-    def _read(self) -> None:
-        for message in self._socket:
-            self.bytes += len(message)
-            self.lost += isinstance(message, str) and '"op": "dropped"' in message

@@ -16,9 +16,11 @@ from pathlib import Path
 import httpx
 from playwright.sync_api import expect
 
-from bench.real_robot import LiveViewer, pids
+from bench.real_robot import pids
 from server import VERSION
+from server.features.bench.live_viewer import LiveViewer
 from server.features.bench.process_figures import anonymous_mb, core_percent
+from server.platform.settings import DataFolder
 from tests.browser.opening import DESKTOP, launched, opened_page, signed_in
 from tests.proofs.installed import DATA, ENVIRONMENT, MUCAT, InstalledRobot, config_with_board, install_wheels
 from tests.proofs.roots import ROOTS, RootSystem
@@ -115,14 +117,13 @@ def _swim(root: RootSystem, figures: Figures, mode: str, config: str | None) -> 
 
 def _measure(robot: InstalledRobot, figures: Figures) -> None:
     """Processor time and memory while a viewer reads everything."""
-    viewer = LiveViewer(robot)
-    processes = robot.processes()
-    time.sleep(SETTLE)
-    percent = core_percent(pids(processes), MEASURED)
-    for name, process in processes.items():
-        figures.percent[name] = round(percent[name], 1)
-        figures.anonymous[name] = round(anonymous_mb(process.pid), 1)
-    viewer.close()
+    with LiveViewer(DataFolder(robot.data)):
+        processes = robot.processes()
+        time.sleep(SETTLE)
+        percent = core_percent(pids(processes), MEASURED)
+        for name, process in processes.items():
+            figures.percent[name] = round(percent[name], 1)
+            figures.anonymous[name] = round(anonymous_mb(process.pid), 1)
 
 
 def _look(robot: InstalledRobot) -> None:

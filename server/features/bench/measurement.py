@@ -1,11 +1,9 @@
 """Measurements of a robot's software on this computer: its start, and a recording with a viewer."""
 
-import json
 import socket
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import urllib.error
 import urllib.request
@@ -16,14 +14,11 @@ from itertools import pairwise
 from pathlib import Path
 from statistics import quantiles
 
-from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import ClientConnection, connect
-
 from robot_runtime.contract.topics import CONTROL, EVENT
+from server.features.bench.live_viewer import LiveViewer
 from server.features.bench.process_figures import anonymous_mb, core_percent, cpu_seconds, family
 from server.features.bench.robot_processes import OUTSIDE, find_processes
 from server.library.content import Recording
-from server.platform.certificate import trust_only
 from server.platform.folder_lock import runner_of
 from server.platform.running_server import ask
 from server.platform.settings import DataFolder, SetupError
@@ -109,7 +104,7 @@ def measure_load(folder: DataFolder, seconds: float, tell: Callable[[str], None]
     runner = runner_of(folder)
     if runner is None:
         raise SetupError(f"No robot runs on {folder.path}. Start it with `mucat run`, or as a service.")
-    with _recording(folder) as session, _viewing(folder) as viewer:
+    with _recording(folder) as session, LiveViewer(folder) as viewer:
         tell(f"A session is recorded for {seconds + SETTLE:.0f} s, with a viewer ...")
         time.sleep(SETTLE)
         processes = find_processes(runner, folder.run)
@@ -154,37 +149,6 @@ def _recording(folder: DataFolder) -> Iterator[int]:
         for method, path in (("POST", "/stop"), ("DELETE", ""), ("POST", "/purge")):
             with suppress(SetupError):
                 ask(folder, method, f"/sessions/{session}{path}")
-
-
-class _Viewer:
-    """Counts of what the live socket of a program that reads everything but pictures sends."""
-
-    def __init__(self) -> None:
-        self.bytes = 0
-        self.left_out = 0
-        """Messages that say that samples were left out."""
-
-    def read(self, socket_: ClientConnection) -> None:
-        """Count until the connection ends."""
-        with suppress(ConnectionClosed):
-            for message in socket_:
-                self.bytes += len(message)
-                self.left_out += isinstance(message, str) and json.loads(message).get("op") == "dropped"
-
-
-@contextmanager
-def _viewing(folder: DataFolder) -> Iterator[_Viewer]:
-    url = folder.address.read_text(encoding="ascii").strip()
-    viewer = _Viewer()
-    with connect(
-        f"{url.replace('http', 'ws', 1)}/api/live",
-        ssl=trust_only(folder) if url.startswith("https:") else None,
-        additional_headers={"Authorization": f"Bearer {folder.token.read_text(encoding='ascii').strip()}"},
-        max_size=None,
-        proxy=None,
-    ) as socket_:
-        threading.Thread(target=viewer.read, args=(socket_,), daemon=True).start()
-        yield viewer
 
 
 def _read(folder: DataFolder, session: int, start: float, end: float) -> tuple[list[float], tuple[str, ...]]:
