@@ -9,15 +9,11 @@ from server.features.comparison.worker import ComparisonWorker
 
 
 class ComparisonPlug(Plug):
-    """The plug that starts the process early where memory allows it, and has it read what is new."""
+    """The plug that has the process read what is new, and ends it with the server."""
 
     def __init__(self, worker: ComparisonWorker, summaries: SummaryWorker) -> None:
         self._worker = worker
         self._summaries = summaries
-
-    def warm_up(self) -> None:
-        """Start the process."""
-        self._worker.prepare()
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
         """Make summaries of the sessions that have ended."""
