@@ -73,11 +73,10 @@ OVERLAPS = """async ([widths, breaks]) => {
         }
         for (const [place, [one, a]] of things.entries()) {
             for (const [other, b] of things.slice(place + 1)) {
+                if (Math.min(a.right, b.right) - Math.max(a.left, b.left) <= 0.5) continue;
+                if (Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) <= 0.5) continue;
                 if (one.contains(other) || other.contains(one)) continue;
-                const over = Math.min(a.right, b.right) - Math.max(a.left, b.left);
-                const under = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
-                const words = `${one.textContent.trim()} | ${other.textContent.trim()}`;
-                if (over > 0.5 && under > 0.5) found.push(`${width}: ${words}`);
+                found.push(`${width}: ${one.textContent.trim()} | ${other.textContent.trim()}`);
             }
         }
     }
