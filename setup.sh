@@ -45,6 +45,7 @@ if [ "${1:-run}" = test ]; then
     need firefox-esr firefox-esr
     need nginx-light /usr/sbin/nginx
     need mosquitto /usr/sbin/mosquitto
+    ls /usr/lib/postgresql/*/bin/postgres >/dev/null 2>&1 || missing="$missing postgresql"
     need arduino-builder arduino-builder
     need clang-format clang-format
     need cppcheck cppcheck

@@ -148,6 +148,12 @@ GOALS = {
     "identify.prediction_gain_min": _least(5),
     "link.table6_min_success": _least(1.0),
     "link.undetected_corruptions": _most(0),
+    "archive.ingest_sqlite_s": _most(3),
+    "archive.ingest_postgresql_s": _most(3),
+    "archive.query_sqlite_s": _most(1),
+    "archive.query_postgresql_s": _most(1),
+    "archive.comparison_sqlite_s": _most(1),
+    "archive.comparison_postgresql_s": _most(1),
     "list.frame_ms_max": _most(50, "drawing"),
     "list.open_ms": _most(500),
     # A Raspberry Pi Zero takes some thirty times as long: 4 % of it at 10 Hz, and 2 s for the first load.

@@ -49,6 +49,7 @@ PARTS = {
         BenchPart("outage"),
         BenchPart("store"),
         BenchPart("export"),
+        BenchPart("archive"),
         BenchPart("connection"),
         BenchPart("start"),
         BenchPart("latency", draws=True),

@@ -81,7 +81,7 @@ def fill(data: Path, sessions: int) -> None:
     folder = DataFolder(data)
     make_folders(folder)
     prepare(folder)
-    with closing(Store(folder.database)) as store:
+    with closing(Store(folder.database_location)) as store:
         numbers = range(1, sessions + 1)
         for table, rows in (
             (SessionRow, [_session(number) for number in numbers]),

@@ -113,7 +113,7 @@ CREATE TABLE "session" (
 	seed INTEGER, 
 	kept BOOLEAN DEFAULT '0' NOT NULL, 
 	deleted FLOAT
-);
+, archived FLOAT);
 CREATE INDEX ix_session_state ON session (state);
 CREATE UNIQUE INDEX session_identifier ON session (identifier);
 CREATE TABLE "marker" (
@@ -175,4 +175,83 @@ CREATE TABLE session_summary (
 	PRIMARY KEY (session_id), 
 	FOREIGN KEY(session_id) REFERENCES session (id)
 );
-INSERT INTO alembic_version VALUES ('0014');
+CREATE TABLE sweep (
+	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+	name VARCHAR NOT NULL, 
+	title VARCHAR NOT NULL, 
+	scenario VARCHAR NOT NULL, 
+	text VARCHAR NOT NULL, 
+	scenario_text VARCHAR NOT NULL, 
+	craft VARCHAR NOT NULL, 
+	who VARCHAR NOT NULL, 
+	state VARCHAR NOT NULL, 
+	problem VARCHAR NOT NULL, 
+	runs INTEGER NOT NULL, 
+	done INTEGER NOT NULL, 
+	failed INTEGER NOT NULL, 
+	best VARCHAR NOT NULL, 
+	best_figure VARCHAR NOT NULL, 
+	parameters VARCHAR NOT NULL, 
+	made FLOAT NOT NULL, 
+	started FLOAT, 
+	ended FLOAT
+);
+CREATE TABLE run_figures (
+	"key" VARCHAR NOT NULL, 
+	firmware VARCHAR NOT NULL, 
+	software VARCHAR NOT NULL, 
+	simulated FLOAT NOT NULL, 
+	seconds FLOAT NOT NULL, 
+	problem VARCHAR NOT NULL, 
+	figures VARCHAR NOT NULL, 
+	words VARCHAR NOT NULL, 
+	PRIMARY KEY ("key")
+);
+CREATE TABLE sweep_run (
+	id INTEGER NOT NULL, 
+	sweep_id INTEGER NOT NULL, 
+	number INTEGER NOT NULL, 
+	variant INTEGER NOT NULL, 
+	seed INTEGER NOT NULL, 
+	parameter_values VARCHAR NOT NULL, 
+	"key" VARCHAR NOT NULL, 
+	PRIMARY KEY (id), 
+	CONSTRAINT sweep_run_place UNIQUE (sweep_id, number), 
+	FOREIGN KEY(sweep_id) REFERENCES sweep (id), 
+	FOREIGN KEY("key") REFERENCES run_figures ("key")
+);
+CREATE INDEX ix_sweep_run_key ON sweep_run ("key");
+CREATE TABLE lab_robot (
+	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+	name VARCHAR NOT NULL, 
+	url VARCHAR NOT NULL, 
+	token VARCHAR NOT NULL, 
+	certificate VARCHAR NOT NULL, 
+	added FLOAT NOT NULL, 
+	CONSTRAINT lab_robot_name UNIQUE (name)
+);
+CREATE TABLE pulled_session (
+	identifier VARCHAR NOT NULL, 
+	robot VARCHAR NOT NULL, 
+	pulled FLOAT NOT NULL, 
+	PRIMARY KEY (identifier)
+);
+CREATE TABLE session_figures (
+	session_id INTEGER NOT NULL, 
+	segment INTEGER NOT NULL, 
+	controller VARCHAR NOT NULL, 
+	gains VARCHAR NOT NULL, 
+	craft VARCHAR NOT NULL, 
+	duration FLOAT, 
+	deepest FLOAT, 
+	rmse FLOAT, 
+	cycle_amplitude FLOAT, 
+	overshoot FLOAT, 
+	settling_time FLOAT, 
+	fin_strokes FLOAT, 
+	frames_lost FLOAT, 
+	alarms FLOAT, 
+	PRIMARY KEY (session_id, segment), 
+	FOREIGN KEY(session_id) REFERENCES session (id)
+);
+INSERT INTO alembic_version VALUES ('0016');

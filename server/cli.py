@@ -15,6 +15,7 @@ from server.platform.terminal import PlainFormatter
 
 COMMANDS = {
     "run": "server.startup:run",
+    "lab run": "server.startup:run_lab",
     "runtime": "server.processes.runtime_service:run_runtime",
     "completion": "server.cli:completion",
 }

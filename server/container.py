@@ -9,18 +9,20 @@ from typing import Any
 
 from robot_runtime.clock import Clock, SteadyClock
 from robot_runtime.control.alarms import Alarms
+from server.driving.plug import DrivingPlug
 from server.feature import Feature, Plug, list_features
 from server.health.plug import HealthPlug, ServerStart
 from server.http.plug import HttpPlug, ShellToken
 from server.platform.settings import DataFolder, Settings
 from server.platform.store import Store
 from server.processes.managed_process import ProcessCommand
+from server.recording.plug import RecorderPlug
 from server.services import Services
 from server.stream.plug import StreamPlug
 
 log = logging.getLogger(__name__)
 
-BASE: tuple[type[Plug], ...] = (HttpPlug, StreamPlug, HealthPlug)
+BASE: tuple[type[Plug], ...] = (HttpPlug, StreamPlug, HealthPlug, DrivingPlug, RecorderPlug)
 """The plugs without which there is no server: opened first, ended last."""
 
 
@@ -39,7 +41,7 @@ class Container:
         self.services.add(DataFolder, settings.data)
         self.clock: Clock = SteadyClock()
         self.services.add(Clock, self.clock)  # type: ignore[type-abstract]
-        self.services.add(Store, Store(settings.data.database))
+        self.services.add(Store, Store(settings.data.database_location))
         self.services.add(ShellToken, ShellToken(token))
         self.services.add(ServerStart, ServerStart(tuple(commands), ended))
         plugs = [*BASE, *(resolve_name(feature.plug) for feature in features_on(settings) if feature.plug)]

@@ -12,12 +12,15 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import entry_points
 from pkgutil import iter_modules, resolve_name
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from robot_runtime.contract.declarations import Declarations
 from server.services import Maker
 
 ENTRY_POINTS = "mucat.features"
+
+Place = Literal["robot", "lab", "both"]
+"""The servers that have a feature: a robot's, a lab's, which has no robot, or both."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,17 +28,19 @@ class Feature:
     """A feature and its parts; locations in the code are written "module:name".
 
     `section` is the class of its section of robot.toml, which has its name. `is_on` tells by the section
-    whether the feature has anything to do. An `optional` one can be switched off in `[features]`. `removed`
-    are entries of earlier versions: empty ones are passed over, others refused in words. `routes` are places
-    of `Operations`, or of functions that make them of their section. `prepare` is the place of a function of
-    the settings, called before the server is loaded; a SetupError ends the start. `commands` are those of the
-    shell, by their names; "scenario sweep" is one of the group `scenario`. `plug` is the place of its `Plug`.
+    whether the feature has anything to do. `place` names the servers that have it. An `optional` one can be
+    switched off in `[features]`. `removed` are entries of earlier versions: empty ones are passed over, the
+    others refused in words. `routes` are places of `Operations`, or of functions that make them of their
+    section. `prepare` is the place of a function of the settings, called before the server is loaded; a
+    SetupError ends the start. `commands` are those of the shell, by their names; two words are a command of a
+    group. `plug` is the place of its `Plug`.
     """
 
     name: str
     section: type | None = None
     is_on: Callable[[Any], bool] = lambda _: True
     optional: bool = False
+    place: Place = "robot"
     removed: Sequence[str] = ()
     routes: Sequence[str] = ()
     commands: Mapping[str, str] = field(default_factory=dict)

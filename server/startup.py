@@ -7,16 +7,21 @@ from pkgutil import resolve_name
 
 import click
 
+from robot_runtime.durable_files import write_whole
 from robot_runtime.simulation.boards.mistakes import check_mistake, write_list
 from server.feature import list_features
 from server.platform.command_line import with_settings
 from server.platform.folder_lock import claim
+from server.platform.lab_config import LabConfig
 from server.platform.last_configuration import keep_configuration
 from server.platform.settings import Settings, SetupError, keep_config
 
 BYTES_MAX = 500_000_000
 """Of the server's own memory: five times what it needs. An attack once brought it to 1.4 GB. Where systemd
 starts it, its unit sets a limit as well, which only a kernel with the memory cgroup observes."""
+
+PORT = click.option("--port", type=int, help="Default: server.port in robot.toml, or 8000.")
+HOST = click.option("--host", help="Address to listen on. Default: server.host in robot.toml, or 127.0.0.1.")
 
 
 def _read_mistakes(_: click.Context, __: click.Parameter, texts: tuple[str, ...]) -> tuple[str, ...]:
@@ -29,8 +34,8 @@ def _read_mistakes(_: click.Context, __: click.Parameter, texts: tuple[str, ...]
 
 
 @click.command(epilog="\n".join(["\b", "Mistakes:", *(f"  {line}" for line in write_list())]))
-@click.option("--port", type=int, help="Default: server.port in robot.toml, or 8000.")
-@click.option("--host", help="Address to listen on. Default: server.host in robot.toml, or 127.0.0.1.")
+@PORT
+@HOST
 @click.option(
     "--mistake",
     "mistakes",
@@ -59,12 +64,42 @@ def run(settings: Settings, mistakes: tuple[str, ...], *, uncalibrated: bool, ex
     settings = replace(
         settings, mistakes=mistakes, uncalibrated=uncalibrated, external_runtime=external_runtime
     )
+    if settings.lab:
+        raise SetupError(
+            f"{settings.data.path} is a lab's. Start it with `mucat lab run`, or choose "
+            "another folder with --data."
+        )
     with claim(settings.data):
         if uncalibrated:
             settings.data.board_eeprom.unlink(missing_ok=True)
         if external_runtime:
             keep_configuration(settings)
         return _serve(keep_config(settings))
+
+
+@click.command("run")
+@PORT
+@HOST
+@with_settings
+def run_lab(settings: Settings) -> int:
+    """Serve a lab: the page and the archive of several robots, without a robot."""
+    with claim(settings.data):
+        keep_configuration(settings)
+        return _serve(keep_config(_become_lab(settings)))
+
+
+def _become_lab(settings: Settings) -> Settings:
+    """Mark the data folder as a lab's. Raise SetupError where a robot uses it, or it cannot be written."""
+    folder = settings.data
+    if not settings.lab and folder.database.exists():
+        raise SetupError(
+            f"{folder.path} has the recordings of a robot. Choose another folder for the lab, with --data."
+        )
+    try:
+        write_whole(folder.lab, settings.section(LabConfig).database.encode())
+    except OSError as problem:
+        raise SetupError(f"{folder.lab} cannot be written: {problem.strerror}.") from problem
+    return replace(settings, lab=True)
 
 
 def _serve(settings: Settings) -> int:
@@ -83,7 +118,7 @@ def _serve(settings: Settings) -> int:
     for feature in list_features().values():
         if feature.prepare and settings.has(feature):
             resolve_name(feature.prepare)(settings)
-    if settings.emulated_board:
+    if settings.emulated_board and not settings.lab:
         prepare_board(settings)
     with open_socket(settings.server.host, settings.server.port) as listener:
         certificate = prepare_certificate(settings) if settings.server.tls else None

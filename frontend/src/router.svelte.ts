@@ -4,21 +4,29 @@ import { pages } from './texts/pages';
 
 /** The pages that have a tab. */
 export const PAGES = ['operate', 'tune', 'missions', 'scenarios', 'comm-tests', 'sessions', 'system'] as const;
+/** The pages of a lab that have a tab. */
+const LAB_PAGES = ['sessions', 'figures', 'system'] as const;
+/** The pages of a lab without a tab. */
+const LAB_INNER: readonly PageName[] = ['replay', 'people'];
+type Tab = (typeof PAGES | typeof LAB_PAGES)[number];
 const ALL = [...PAGES, 'flight', 'exhibit', 'gamepads', 'replay', 'people', 'bring-up'] as const;
 
-export type PageName = (typeof ALL)[number] | 'unknown';
+export type PageName = (typeof ALL)[number] | Tab | 'unknown';
 
 /** ms between two writings of the address: browsers refuse many in a row */
 const WRITE_AFTER = 300;
 
-/** The page that the address names after its hash: Operate where it names none, `unknown` where there is no such page. */
+/** The page that the address names after its hash: the first where it names none, `unknown` where there is no such page. */
 export class Router {
   current = $state<PageName>('operate');
+  /** the pages that have a tab here */
+  tabs = $state.raw<readonly [Tab, ...Tab[]]>(PAGES);
   /** what the address names within the page: #/comm-tests/runs/3 is ['runs', '3'] */
   within = $state.raw<readonly string[]>([]);
   /** what the address says of what is seen there: #/sessions/3?at=12.5 is at, '12.5'. Whoever reads it checks it. */
   seen = $state.raw<Seen>(readSeen(''));
   #path = '';
+  #inner: readonly PageName[] = ALL;
   /** the address as it was read or written here last */
   #known = '';
   #writing: ReturnType<typeof setTimeout> | undefined;
@@ -27,6 +35,13 @@ export class Router {
 
   constructor() {
     window.addEventListener('hashchange', this.#read);
+    this.#read();
+  }
+
+  /** Know the pages of a lab alone, which has no robot. */
+  enterLab(): void {
+    this.tabs = LAB_PAGES;
+    this.#inner = LAB_INNER;
     this.#read();
   }
 
@@ -80,7 +95,7 @@ export class Router {
     const [path = '', seen = ''] = location.hash.replace(/^#\/?/, '').split(/\?(.*)/s);
     this.#path = path;
     const [name = '', ...within] = path.split('/');
-    this.current = name === '' ? 'operate' : (ALL.find((page) => page === name) ?? 'unknown');
+    this.current = name === '' ? this.tabs[0] : ([...this.tabs, ...this.#inner].find((page) => page === name) ?? 'unknown');
     this.within = within;
     this.seen = readSeen(seen);
   };

@@ -6,7 +6,7 @@ import { api } from '../src/api';
 import { nameClient } from '../src/http';
 
 const PERSON = { device: 3, name: 'Firefox on Linux', role: 'operator', kind: 'browser', limited: false, session: null } as const;
-const ME = { signed_in: true, robot: 'turtle', identity: PERSON, ended: '', pairing_open: false, operators_only: ['startSession'], ends: null };
+const ME = { signed_in: true, robot: 'turtle', lab: false, identity: PERSON, ended: '', pairing_open: false, operators_only: ['startSession'], ends: null };
 const NOBODY = { ...ME, signed_in: false, identity: null };
 let answers: Record<string, () => Response>;
 let sent: Request[];

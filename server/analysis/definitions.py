@@ -38,3 +38,11 @@ RUN_FIGURES: tuple[FigureMeaning, ...] = (
     ALARMS,
 )
 """Of a run that is not recorded: those of a comparison, and two of a dive."""
+_SHARED = ("rmse", "cycle_amplitude", "overshoot", "settling_time", "fin_strokes", "frames_lost")
+"""Figures of a comparison that a dive shows, too."""
+STORY_FIGURES: tuple[FigureMeaning, ...] = (
+    describe("duration", "Duration", "s", 1, "Time armed in the range.", "neither"),
+    DEEPEST,
+    *(meaning for name in _SHARED for meaning in FIGURES if meaning.name == name),
+    ALARMS,
+)

@@ -5,7 +5,7 @@ from math import inf
 
 import numpy as np
 
-from server.analysis.definitions import ALARMS, DEEPEST, FIGURES
+from server.analysis.definitions import STORY_FIGURES
 from server.analysis.figures import (
     MEASURED,
     NEVER_ARMED,
@@ -23,16 +23,8 @@ from server.analysis.segment import SEGMENTS_MAX, Segment
 from server.analysis.story_schemas import StoryFigures
 from server.library.content import Recording
 from server.library.timeline import EVENTS_MAX, read_events
-from server.metrics.figure import Figure, FigureMeaning, describe
+from server.metrics.figure import Figure
 
-_SHARED = ("rmse", "cycle_amplitude", "overshoot", "settling_time", "fin_strokes", "frames_lost")
-"""Figures of a comparison that a dive shows, too."""
-STORY_FIGURES: tuple[FigureMeaning, ...] = (
-    describe("duration", "Duration", "s", 1, "Time armed in the range.", "neither"),
-    DEEPEST,
-    *(meaning for name in _SHARED for meaning in FIGURES if meaning.name == name),
-    ALARMS,
-)
 _OF_A_STEP = ("cycle_amplitude", "overshoot", "settling_time")
 DISARMING = 1.0
 """s from the end of an armed time until the alarm that ended it."""

@@ -58,8 +58,8 @@ class Health(Schema):
     version: str
     robot: str
     parts: list[PartHealth] = Field(
-        description="server, database, runtime, link, board, simulator, scene, camera, and events where "
-        "`[events]` in robot.toml names a broker"
+        description="server and database; of a robot also runtime, link, board, simulator, scene, camera, "
+        "and events where `[events]` in robot.toml names a broker"
     )
 
 
@@ -145,21 +145,25 @@ class HealthMonitor:
 
     @property
     def alive(self) -> bool:
-        """False where the database or the runtime has failed."""
-        return "failed" not in (self._database()[0], self._runtime()[0])
+        """False where the database or the robot's runtime has failed."""
+        parts = (self._database(),) if self._settings.lab else (self._database(), self._runtime())
+        return all(state != "failed" for state, _ in parts)
 
     def health(self) -> Health:
         """Return the health of every part now."""
         conditions: dict[PartName, Condition] = {
             "server": ("ok", "Answers requests."),
             "database": self._database(),
-            "runtime": self._runtime(),
-            "link": self._link(),
-            "board": self._board(),
-            "simulator": self._simulator(),
-            "scene": self._scene(),
-            "camera": self._camera(),
         }
+        if not self._settings.lab:
+            conditions |= {
+                "runtime": self._runtime(),
+                "link": self._link(),
+                "board": self._board(),
+                "simulator": self._simulator(),
+                "scene": self._scene(),
+                "camera": self._camera(),
+            }
         if (events := self.events()) is not None:
             conditions["events"] = events
         parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]

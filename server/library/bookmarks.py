@@ -152,7 +152,9 @@ def _require_room(connection: Connection, session: int, text: str) -> None:
 
 
 def _require_characters(connection: Connection, session: int, more: int) -> None:
-    lengths = select(func.total(func.length(BookmarkRow.text))).where(BookmarkRow.session_id == session)
+    lengths = select(func.coalesce(func.sum(func.length(BookmarkRow.text)), 0)).where(
+        BookmarkRow.session_id == session
+    )
     if connection.execute(lengths).scalar_one() + more > NOTES_MAX:
         raise SessionStateError(
             f"The notes at this session's bookmarks would have more than {NOTES_MAX} characters, the most "

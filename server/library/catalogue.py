@@ -93,6 +93,11 @@ class Catalogue(Listing):
 
         await self._store.write(write, frees=True)
 
+    async def note_archived(self, identifiers: Sequence[str]) -> None:
+        """Note that a lab has these sessions; those that are not here are passed over."""
+        those = col(SessionRow.identifier).in_(identifiers), col(SessionRow.archived).is_(None)
+        await self._store.execute(update(SessionRow).where(*those).values(archived=time()))
+
     def notify(self, session: int) -> Session:
         """Report a session's new state to the pages, if it is being recorded."""
         row = self.find(session)

@@ -11,8 +11,8 @@ import time
 from collections.abc import Callable
 from datetime import UTC, datetime
 
-from sqlalchemy import Connection, update
-from sqlmodel import col, func, select
+from sqlalchemy import Connection, case, update
+from sqlmodel import col, select
 
 from robot_runtime.clock import Clock, boot
 from server.library.catalogue import Catalogue
@@ -112,7 +112,7 @@ def _correct(connection: Connection, rows: list[SessionRow], ahead: float, now: 
         connection.execute(
             update(BookmarkRow)
             .where(col(BookmarkRow.session_id) == row.id)
-            .values(made=func.min(BookmarkRow.made + late, now))
+            .values(made=case((col(BookmarkRow.made) + late < now, col(BookmarkRow.made) + late), else_=now))
         )
 
 

@@ -1,9 +1,10 @@
 """The section [sessions] of robot.toml."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from robot_runtime.contract.limits import Range
+from server.platform.settings import Settings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -14,3 +15,9 @@ class SessionsConfig:
     undo_days: Annotated[float, Range(0, 3650)] = 7.0
     keep_days: Annotated[float, Range(0, 36500)] = 0.0
     keep_free: Annotated[float, Range(0, 100_000)] = 0.5
+
+
+def read_rules(settings: Settings) -> SessionsConfig:
+    """Return the rules in force. A lab's archive removes nothing by itself: it may be the last copy."""
+    rules = settings.section(SessionsConfig)
+    return replace(rules, keep_days=0.0, keep_free=0.0) if settings.lab else rules

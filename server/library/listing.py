@@ -74,6 +74,7 @@ class SessionSelection(Schema):
     state: State | None = None
     scenario: Annotated[str, Field(max_length=200, description="name of the scenario that they ran")] = ""
     controller: Annotated[str, Field(max_length=100, description="title of one that held the depth")] = ""
+    robot: Annotated[str, Field(max_length=100, description="name of the robot that recorded them")] = ""
     film: Annotated[bool, Field(description="only those with a film")] = False
     kept: Annotated[bool, Field(description="only those that the rules of retention never take")] = False
     since: Annotated[AwareDatetime | None, Field(description="started then or later")] = None
@@ -124,7 +125,7 @@ class Listing:
 
         With `before` only those of lower numbers; without the first `skip` of them.
         """
-        chosen = [*_conditions(selection)]
+        chosen = [*conditions(selection)]
         rest = [] if before is None else [col(SessionRow.id) < before]
         query = _joined(select(*_LISTED)).where(*chosen, *rest)
         query = query.order_by(*_order(by)).limit(limit + 1).offset(skip)
@@ -174,7 +175,7 @@ class Listing:
             "scenario": _SCENARIO,
             "mission": _MISSION,
         }
-        query = _joined(select(label[by])).where(*_conditions(selection)).order_by(*_order(by))
+        query = _joined(select(label[by])).where(*conditions(selection)).order_by(*_order(by))
         with self._reader.read() as database:
             labels = [row[0] for row in database.connection().execute(query)]
         if by == "day":
@@ -192,14 +193,20 @@ class Listing:
         used = func.json_each(SummaryRow.document, "$.controllers").table_valued("value")
         query = select(used.c.value).select_from(SummaryRow).join(used, true()).distinct()
         query = query.join(SessionRow, col(SessionRow.id) == col(SummaryRow.session_id))
-        query = query.where(*_conditions(EVERY_SESSION)).order_by(used.c.value).limit(TAGS_SHOWN)
+        query = query.where(*conditions(EVERY_SESSION)).order_by(used.c.value).limit(TAGS_SHOWN)
         with self._reader.read() as database:
             return list(database.connection().execute(query).scalars())
+
+    def robots(self) -> list[str]:
+        """Return the robots of the sessions outside the bin, in alphabetical order; at most `TAGS_SHOWN`."""
+        query = select(SessionRow.robot).where(*conditions(EVERY_SESSION)).distinct()
+        with self._reader.read() as database:
+            return list(database.exec(query.order_by(SessionRow.robot).limit(TAGS_SHOWN)))
 
     def tags(self) -> list[str]:
         """Return the tags of sessions outside the bin, those of most sessions first; at most `TAGS_SHOWN`."""
         used = select(SessionTag.tag).join(SessionRow, col(SessionRow.id) == col(SessionTag.session_id))
-        used = used.where(*_conditions(EVERY_SESSION))
+        used = used.where(*conditions(EVERY_SESSION))
         ordered = used.group_by(SessionTag.tag).order_by(desc(func.count()), col(SessionTag.tag))
         with self._reader.read() as database:
             return list(database.exec(ordered.limit(TAGS_SHOWN)))
@@ -235,7 +242,6 @@ class Listing:
         with reading_content(row):
             return SessionDetail(
                 **summary.model_dump(),
-                identifier=row.identifier,
                 scenario=row.scenario,
                 configuration=row.configuration,
                 water=which_water({name for name, *_ in spans}),
@@ -269,7 +275,8 @@ def _order(by: Grouping) -> list[ColumnElement[Any]]:
     return [label == "", label, newest]
 
 
-def _conditions(selection: SessionSelection) -> Iterator[ColumnElement[bool]]:
+def conditions(selection: SessionSelection) -> Iterator[ColumnElement[bool]]:
+    """Yield the conditions on rows of sessions; a session has to meet all."""
     row = SessionRow
     yield col(row.state).not_in(HIDDEN)
     yield col(row.deleted).is_not(None) if selection.deleted else col(row.deleted).is_(None)
@@ -279,6 +286,8 @@ def _conditions(selection: SessionSelection) -> Iterator[ColumnElement[bool]]:
         yield col(row.state) == selection.state
     if selection.scenario:
         yield col(row.scenario_name) == selection.scenario
+    if selection.robot:
+        yield col(row.robot) == selection.robot
     if selection.kept:
         yield col(row.kept).is_(True)
     if selection.since is not None:

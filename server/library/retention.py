@@ -11,18 +11,25 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from math import inf
 from time import time
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from sqlalchemy import ColumnElement, Connection, UpdateBase, delete, update
+from sqlalchemy import ColumnElement, Connection, UpdateBase, case, delete, update
 from sqlmodel import col, func, select
 
 from robot_runtime.clock import Clock
-from server.library.config import SessionsConfig
+from server.library.config import read_rules
 from server.library.film_removal import FilmRemoval
 from server.library.storage import free_for_recordings
-from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
+from server.platform.models import (
+    BookmarkRow,
+    Chunk,
+    Gap,
+    SessionFiguresRow,
+    SessionRow,
+    SessionTag,
+    SummaryRow,
+)
 from server.platform.notices import Notices
-from server.platform.schema import INCREMENTAL
 from server.platform.settings import Settings
 from server.platform.store import Store, StoreError
 from server.platform.wall_clock import DAY, SOFTWARE_MADE, WallClock, is_set
@@ -51,6 +58,7 @@ class _Candidate(NamedTuple):
     bytes: int
     started: float
     deleted: float | None
+    archived: float | None
 
 
 class RetentionWorker:
@@ -70,7 +78,7 @@ class RetentionWorker:
         self._store = store
         self._films = FilmRemoval(store)
         self._settings = settings
-        self._rules = settings.section(SessionsConfig)
+        self._rules = read_rules(settings)
         self._notices = notices
         self._clock = clock
         self._wall_clock = WallClock(clock, settings.data.wall_clock)
@@ -147,7 +155,17 @@ class RetentionWorker:
         needed -= sum(session.bytes for session in binned if session in going or session not in settled)
         if needed <= 0:
             return
-        candidates = await self._unprotected()
+        unprotected = await self._unprotected()
+        elsewhere = _first([row for row in unprotected if row.archived is not None], needed)
+        if elsewhere:
+            await self._change(elsewhere, deleted=now)
+            self._notify(
+                elsewhere, f"Less than {self._rules.keep_free:g} GB of the disk are free, and a lab has them"
+            )
+            needed -= sum(session.bytes for session in elsewhere)
+        if needed <= 0:
+            return
+        candidates = [row for row in unprotected if row.archived is None]
         needed = await self._remove_films(candidates, needed)
         if needed <= 0:
             return
@@ -200,7 +218,8 @@ class RetentionWorker:
 
     async def _find(self, *conditions: ColumnElement[bool]) -> list[_Candidate]:
         row = SessionRow
-        query = select(row.id, row.name, row.bytes, row.started, row.deleted).order_by(col(row.started))  # type: ignore[call-overload]
+        columns = [getattr(row, name) for name in _Candidate._fields]
+        query: Any = select(*columns).order_by(col(row.started))
         query = query.where(col(row.state).not_in(HIDDEN), *conditions)
 
         def read() -> list[_Candidate]:
@@ -235,7 +254,7 @@ class RetentionWorker:
             # What is left shows on the page how far it is.
             remaining = col(SessionRow.bytes) - sum(size for _, size in rows)
             row = update(SessionRow).where(col(SessionRow.id) == session)
-            connection.execute(row.values(bytes=func.max(remaining, 0)))
+            connection.execute(row.values(bytes=case((remaining > 0, remaining), else_=0)))
             return len(rows)
 
         while await self._store.write(remove_chunks) > 0:
@@ -246,26 +265,17 @@ class RetentionWorker:
                 await asyncio.sleep(PAUSE)
 
         def remove_rest(connection: Connection) -> None:
-            for table in (SessionTag, SummaryRow):
+            for table in (SessionTag, SummaryRow, SessionFiguresRow):
                 connection.execute(delete(table).where(col(table.session_id) == session))
             connection.execute(delete(SessionRow).where(col(SessionRow.id) == session))
 
         await self._store.write(remove_rest, frees=True)
 
     async def _free_pages(self) -> None:
-        def free_some(connection: Connection) -> int:
-            if connection.exec_driver_sql("PRAGMA auto_vacuum").scalar_one() != INCREMENTAL:
-                return 0
-            # The driver runs one step of such a statement only, and each step frees one page.
-            for _ in range(PAGES_AT_ONCE):
-                connection.exec_driver_sql("PRAGMA incremental_vacuum(1)")
-            free_pages: int = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
-            return free_pages
-
-        before, free_pages = None, await self._store.write(free_some, frees=True)
+        before, free_pages = None, await self._store.free_some(PAGES_AT_ONCE)
         while free_pages > 0 and free_pages != before:
             await asyncio.sleep(PAUSE)
-            before, free_pages = free_pages, await self._store.write(free_some, frees=True)
+            before, free_pages = free_pages, await self._store.free_some(PAGES_AT_ONCE)
 
 
 def _name(sessions: Sequence[_Candidate]) -> str:

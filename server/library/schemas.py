@@ -18,6 +18,9 @@ NOTE_MAX = 10_000
 NOTES_MAX = 1_000_000
 """Characters of all notes at the bookmarks of a session: an answer has all of them."""
 
+ARCHIVED_MAX = 1000
+"""Sessions that a lab reports at once."""
+
 Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
 Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=NOTE_MAX)]
 Tag = Annotated[
@@ -71,10 +74,17 @@ class SessionGroup(Schema):
     count: int
 
 
+class ArchivedSessions(RequestBody):
+    """Sessions that a lab has, by their identifiers."""
+
+    identifiers: Annotated[
+        list[Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]], Field(min_length=1, max_length=ARCHIVED_MAX)
+    ]
+
+
 class SessionDetail(Session):
     """A session with all data except the samples."""
 
-    identifier: str = Field(description="the same wherever it is imported, 32 hexadecimal digits")
     scenario: str = Field(description="TOML; empty without one")
     configuration: str = Field(description="robot.toml as it was at the start")
     water: Water = Field(description="simulated, or real: no simulator has sent anything")

@@ -7,7 +7,7 @@ from pydantic import Field
 from sqlmodel import col, func, select
 
 from robot_runtime.contract.topics import FILM
-from server.library.config import SessionsConfig
+from server.library.config import read_rules
 from server.platform.disk_space import free_bytes
 from server.platform.models import Chunk, SessionRow
 from server.platform.schema_base import Schema
@@ -41,13 +41,11 @@ class Storage(Schema):
 
 def measure(store: Store, settings: Settings) -> Storage:
     """Measure the disk and the database. Raise StoreError."""
-    folder, rules = settings.data, settings.section(SessionsConfig)
+    folder, rules = settings.data, read_rules(settings)
+    space = store.measure()
     binned = col(SessionRow.deleted).is_not(None)
     query = select(binned, func.count(), func.coalesce(func.sum(SessionRow.bytes), 0))
     with store.read() as database:
-        connection = database.connection()
-        pages = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
-        size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
         rows = database.exec(query.where(col(SessionRow.state).not_in(HIDDEN)).group_by(binned))
         totals = {bool(deleted): (count, total) for deleted, count, total in rows}
         going = select(func.count(), func.coalesce(func.sum(SessionRow.bytes), 0))
@@ -60,8 +58,8 @@ def measure(store: Store, settings: Settings) -> Storage:
     sessions, sessions_bytes = totals.get(False, (0, 0))
     in_bin, bin_bytes = totals.get(True, (0, 0))
     return Storage(
-        database=sum(_bytes(Path(f"{folder.database}{end}")) for end in ("", "-wal", "-shm")),
-        reusable=pages * size,
+        database=space.size,
+        reusable=space.reusable,
         exports=sum(_bytes(path) for path in folder.exports.glob("*")),
         backups=sum(_bytes(path) for path in folder.backups.rglob("*")),
         free=disk.free,
@@ -84,12 +82,8 @@ def free_for_recordings(store: Store, settings: Settings) -> int:
 
     Raise StoreError.
     """
-    with store.read() as database:
-        connection = database.connection()
-        pages = connection.exec_driver_sql("PRAGMA freelist_count").scalar_one()
-        size = connection.exec_driver_sql("PRAGMA page_size").scalar_one()
-    reserved = int(settings.section(SessionsConfig).keep_free * GIGABYTE)
-    return free_bytes(settings.data.path) + int(pages * size) - reserved
+    reserved = int(read_rules(settings).keep_free * GIGABYTE)
+    return free_bytes(settings.data.path) + store.measure().reusable - reserved
 
 
 def _bytes(path: Path) -> int:

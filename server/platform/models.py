@@ -2,12 +2,15 @@
 
 from uuid import uuid4
 
+from sqlalchemy import BigInteger, Integer
 from sqlmodel import Field, Index, SQLModel, UniqueConstraint
 
 IDENTIFIER_MAX = 2**63 - 1
 """SQLite's largest number."""
 NEVER_AGAIN = {"sqlite_autoincrement": True}
 """A number is never given again: pages, links, caches, exports that wait and the audit log hold on to it."""
+BIG = BigInteger().with_variant(Integer(), "sqlite")
+"""A number of 64 bits. SQLite's are, and its primary keys are no other."""
 
 
 class SessionRow(SQLModel, table=True):
@@ -17,7 +20,7 @@ class SessionRow(SQLModel, table=True):
     steady clock counts from. Origins: "operator", "arming", "scenario" (in real time), "simulated" (a
     scenario in simulated time), "import". `scenario` is its text as TOML; `firmware` and `software` are
     hashes. `kept` protects it from the retention rule; `deleted` is when somebody deleted it, until it is
-    really removed.
+    really removed. `archived` is when a lab said that it has the session.
     """
 
     __tablename__ = "session"
@@ -35,8 +38,8 @@ class SessionRow(SQLModel, table=True):
     started_steady: float
     ended: float | None = None
     duration: float = 0.0
-    samples: int = 0
-    bytes: int = 0
+    samples: int = Field(default=0, sa_type=BIG)
+    bytes: int = Field(default=0, sa_type=BIG)
     configuration: str
     robot_state: str
     topics: str
@@ -44,11 +47,12 @@ class SessionRow(SQLModel, table=True):
     origin: str = "operator"
     scenario: str = ""
     scenario_name: str = ""
-    seed: int | None = None
+    seed: int | None = Field(default=None, sa_type=BIG)
     firmware: str = ""
     software: str = ""
     kept: bool = False
     deleted: float | None = None
+    archived: float | None = None
 
 
 class SessionTag(SQLModel, table=True):
@@ -99,13 +103,13 @@ class Chunk(SQLModel, table=True):
         Index("chunk_time", "session_id", "topic", "first_time", "last_time", "count"),
     )
 
-    id: int | None = Field(default=None, primary_key=True)
+    id: int | None = Field(default=None, primary_key=True, sa_type=BIG)
     session_id: int = Field(foreign_key="session.id")
     topic: str
     number: int
     first_time: float
     last_time: float
-    first: int
+    first: int = Field(sa_type=BIG)
     count: int
     encoding: str
     data: bytes
@@ -124,7 +128,7 @@ class Gap(SQLModel, table=True):
     topic: str
     kind: str
     time: float
-    missed: int
+    missed: int = Field(sa_type=BIG)
 
 
 class CommTestRun(SQLModel, table=True):
@@ -359,3 +363,56 @@ class RunFiguresRow(SQLModel, table=True):
     problem: str
     figures: str
     words: str
+
+
+class LabRobotRow(SQLModel, table=True):
+    """A robot that a lab knows: its address, the token by which it lets the lab in, and when it was added.
+
+    `certificate` is what its HTTPS is known by (PEM); empty where public authorities vouch for it, and for
+    HTTP. Time is UTC (s since 1970).
+    """
+
+    __tablename__ = "lab_robot"
+    __table_args__ = (UniqueConstraint("name", name="lab_robot_name"), NEVER_AGAIN)
+
+    id: int | None = Field(default=None, primary_key=True)
+    name: str
+    url: str
+    token: str
+    certificate: str
+    added: float
+
+
+class PulledSessionRow(SQLModel, table=True):
+    """A session that a lab has pulled: once purged there, it is not pulled again. Time as above."""
+
+    __tablename__ = "pulled_session"
+
+    identifier: str = Field(primary_key=True)
+    robot: str
+    pulled: float
+
+
+class SessionFiguresRow(SQLModel, table=True):
+    """Figures of a session in an archive (`segment` 0), or of one of its segments, from 1 on.
+
+    They follow from the samples (`server.analysis.archive_figures`), and are computed again where they are
+    missing. A figure that is not known is None.
+    """
+
+    __tablename__ = "session_figures"
+
+    session_id: int = Field(foreign_key="session.id", primary_key=True)
+    segment: int = Field(primary_key=True)
+    controller: str
+    gains: str
+    craft: str
+    duration: float | None = None
+    deepest: float | None = None
+    rmse: float | None = None
+    cycle_amplitude: float | None = None
+    overshoot: float | None = None
+    settling_time: float | None = None
+    fin_strokes: float | None = None
+    frames_lost: float | None = None
+    alarms: float | None = None

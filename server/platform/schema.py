@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from migrations import HEAD
 from server.platform.database_copies import (
@@ -20,15 +20,25 @@ from server.platform.settings import DataFolder, SetupError
 
 _NEW = Path(__file__).parents[2] / "migrations/schema.sql"
 _REVISION = f"INSERT INTO alembic_version VALUES ('{HEAD}');\n"
+
+
+if TYPE_CHECKING:
+    from alembic.config import Config
+
 INCREMENTAL = 2
 """SQLite's auto_vacuum mode that returns free pages to the disk in small steps, on request."""
 
 
 def prepare(folder: DataFolder) -> None:
-    """Create or upgrade the database; an older one is copied to `backups` first.
+    """Create or upgrade the database; an older file is copied to `backups` first.
 
     Raise SetupError where the database is of a newer version, damaged, or cannot be written.
     """
+    if isinstance(location := folder.database_location, str):
+        from server.platform.postgresql_schema import prepare_archive
+
+        prepare_archive(location)
+        return
     try:
         # Opened for writing, which rolls back the upgrade of a killed server.
         revision = read_revision(folder.database, "rw")
@@ -154,10 +164,19 @@ def _create(database: Path) -> None:
         connection.executescript(f"BEGIN IMMEDIATE;\n{tables}COMMIT;")
 
 
+def make_config() -> "Config":
+    """Return Alembic's configuration, with the migrations."""
+    from alembic.config import Config
+
+    config = Config()
+    config.set_main_option("script_location", str(_scripts()))
+    config.set_main_option("path_separator", "os")
+    return config
+
+
 def _upgrade(database: Path) -> None:
     # Alembic is loaded only where there is something to do: it costs a Raspberry Pi time and memory.
     from alembic import command
-    from alembic.config import Config
     from sqlalchemy import create_engine, event, pool
 
     def connect() -> sqlite3.Connection:
@@ -170,9 +189,7 @@ def _upgrade(database: Path) -> None:
     engine = create_engine("sqlite://", poolclass=pool.NullPool, creator=connect)
     # The driver begins no transaction for changes of tables: a failed upgrade would stay half done.
     event.listen(engine, "begin", lambda begun: begun.exec_driver_sql("BEGIN IMMEDIATE"))
-    config = Config()
-    config.set_main_option("script_location", str(_scripts()))
-    config.set_main_option("path_separator", "os")
+    config = make_config()
     with _driver_errors(), engine.connect() as connection:
         config.attributes["connection"] = connection
         command.upgrade(config, "head")

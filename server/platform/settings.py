@@ -74,8 +74,12 @@ class DataFolder:
         """Exported files."""
         self.imports = path / "imports"
         """Archives while they are imported."""
+        self.pulls = path / "pulls"
+        """A lab's: archives while they are pulled from robots."""
         self.run = path / "run"
         """Folder of sockets and PID files; emptied at a start if none of the processes still runs."""
+        self.lab = path / "lab"
+        """Exists where the folder is a lab's, with the URL of its archive where that is in PostgreSQL."""
         self.lock = path / "server.lock"
         """Held by the one server that uses this folder."""
         self.runner = path / "server.pid"
@@ -135,6 +139,14 @@ class DataFolder:
         self.panels = path / "panels"
         """Your own panels for the page (docs/use/panels.md)."""
 
+    @property
+    def database_location(self) -> Path | str:
+        """The database: its file, or the URL of a lab's archive in PostgreSQL."""
+        try:
+            return self.lab.read_text(encoding="utf-8").strip() or self.database
+        except FileNotFoundError:
+            return self.database
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings(Config):
@@ -159,6 +171,8 @@ class Settings(Config):
     """The runtime is a service of its own, which this server does not start and does not end."""
     configuration_problem: str = ""
     """Reason why these are the settings of the last configuration instead; empty if they are not."""
+    lab: bool = False
+    """The server is a lab's: it has no robot, and keeps the sessions of several."""
     every_feature: bool = False
     """All features are on, whatever their sections say: for the description of the interface."""
     build: Path = BUILD
@@ -183,6 +197,8 @@ class Settings(Config):
         """Return True where this feature is on."""
         if self.every_feature:
             return True
+        if feature.place not in ("both", "lab" if self.lab else "robot"):
+            return False
         if feature.optional and not self.features.get(feature.name, True):
             return False
         return feature.section is None or feature.is_on(self.section(feature.section))
@@ -286,6 +302,7 @@ def read_settings(
         config_text=text,
         features=features,
         sections={**sections, ServerConfig: server},
+        lab=folder.lab.exists(),
     )
 
 

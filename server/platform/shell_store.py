@@ -18,14 +18,13 @@ def open_reader(folder: DataFolder) -> Iterator[Reader]:
     Creating or upgrading it needs the folder's lock. Raise SetupError where the folder is in use or
     the database fails.
     """
-    try:
-        current = read_revision(folder.database) == HEAD
-    except sqlite3.DatabaseError:
-        current = False  # `prepare` says what is the matter
-    if not current:
+    if isinstance(folder.database_location, str):
+        # It has a lock of its own for that.
+        prepare(folder)
+    elif not _is_current(folder):
         with claim(folder):
             prepare(folder)
-    with _explained(folder), closing(Reader(folder.database)) as store:
+    with _explained(folder), closing(Reader(folder.database_location)) as store:
         yield store
 
 
@@ -33,8 +32,15 @@ def open_reader(folder: DataFolder) -> Iterator[Reader]:
 def open_writer(folder: DataFolder) -> Iterator[Store]:
     """Create or upgrade the database of a claimed folder, and open it. Raise SetupError where it fails."""
     prepare(folder)
-    with _explained(folder), closing(Store(folder.database)) as store:
+    with _explained(folder), closing(Store(folder.database_location)) as store:
         yield store
+
+
+def _is_current(folder: DataFolder) -> bool:
+    try:
+        return read_revision(folder.database) == HEAD
+    except sqlite3.DatabaseError:
+        return False  # `prepare` says what is the matter
 
 
 @contextmanager
@@ -42,4 +48,4 @@ def _explained(folder: DataFolder) -> Iterator[None]:
     try:
         yield
     except StoreError as problem:
-        raise SetupError(f"The database {folder.database} fails: {problem}") from problem
+        raise SetupError(f"The database {folder.database_location} fails: {problem}") from problem

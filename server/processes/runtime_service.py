@@ -25,6 +25,8 @@ def run_runtime(settings: Settings) -> None:
 
     `mucat run --external-runtime` is the server beside it.
     """
+    if settings.lab:
+        raise SetupError(f"{settings.data.path} is a lab's, which has no robot.")
     from server.processes.supervisor import plan
 
     (command,) = (candidate for candidate in plan(settings) if candidate.name == "runtime")

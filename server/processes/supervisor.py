@@ -97,7 +97,9 @@ def _supervise(
 
 
 def plan(settings: Settings) -> list[ProcessCommand]:
-    """Return the commands of this robot's processes, each after those that it needs."""
+    """Return the commands of this robot's processes, each after those that it needs; of a lab none."""
+    if settings.lab:
+        return []
     folder, build = settings.data, settings.build
     runtime = [sys.executable, "-m", "robot_runtime", "--config", str(settings.config)]
     runtime += ["--data", str(folder.path), "--heartbeat", f"{HEARTBEAT_SECONDS:g}"]

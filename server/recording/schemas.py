@@ -42,6 +42,7 @@ class Session(Schema):
     """One recording; "interrupted" if the server ended without closing it: its stored samples remain."""
 
     id: int
+    identifier: str = Field(description="the same wherever it is imported, 32 hexadecimal digits")
     name: str
     note: str
     tags: list[str] = Field(description="in alphabetical order")
@@ -68,3 +69,6 @@ class Session(Schema):
     )
     kept: bool = Field(description="protected from the rules of retention")
     deleted: datetime | None = Field(description="UTC; time of its deletion, while it is in the bin")
+    archived: datetime | None = Field(
+        default=None, description="UTC; time at which a lab said that it has it; null before"
+    )

@@ -111,7 +111,7 @@ def from_columns(
     summary: str | None = None,
 ) -> Session:
     """Return the session of a row's `COLUMNS`; `summary` is the stored one, as JSON."""
-    dates = {name: _moment(columns[name]) for name in ("started", "ended", "deleted")}
+    dates = {name: _moment(columns[name]) for name in ("started", "ended", "deleted", "archived")}
     return Session(
         **{**columns, **dates},
         tags=sorted(tags, key=str.casefold),

@@ -37,7 +37,10 @@ class StreamPlug(Plug):
 
     makers: ClassVar[tuple[Maker, ...]] = (make_notices, make_bridge, make_hub)
 
-    def __init__(self, feed: Feed, bridge: Bridge, hub: Hub, closers: SocketClosers) -> None:
+    def __init__(
+        self, settings: Settings, feed: Feed, bridge: Bridge, hub: Hub, closers: SocketClosers
+    ) -> None:
+        self._has_robot = not settings.lab
         self._bridge = bridge
         self._hub = hub
         self._beating: asyncio.Task[None] | None = None
@@ -47,7 +50,8 @@ class StreamPlug(Plug):
     async def open(self) -> None:
         """Connect. Heartbeats start now: catching up may take longer than the runtime waits for them."""
         await self._bridge.open()
-        self._beating = asyncio.create_task(self._beat())
+        if self._has_robot:
+            self._beating = asyncio.create_task(self._beat())
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
         """Watch for pages that have stopped reading."""

@@ -31,7 +31,7 @@ from server.library.bookmarks import Bookmarks
 from server.library.catalogue import Catalogue
 from server.library.retention import RetentionWorker
 from server.library.scenarios import shipped_scenarios
-from server.platform import store as store_module
+from server.platform import sqlite as sqlite_module
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
@@ -206,7 +206,7 @@ COUNTS = (
 
 def weaken(synchronous: str, overwrite: str) -> None:
     """Weaken the durability of the database, which the proof must detect."""
-    make_durable, engine = store_module._make_durable, store_module._engine
+    make_durable, engine = sqlite_module.make_durable, sqlite_module.connect_to
 
     def make_weaker(connection: sqlite3.Connection, record: object) -> None:
         make_durable(connection, record)
@@ -215,7 +215,7 @@ def weaken(synchronous: str, overwrite: str) -> None:
     def engine_weaker(database: Path, options: str, kind: type[Pool]) -> Engine:
         return engine(database, options.replace("psow=0", f"psow={overwrite}"), kind)
 
-    vars(store_module).update(_make_durable=make_weaker, _engine=engine_weaker)
+    vars(sqlite_module).update(make_durable=make_weaker, connect_to=engine_weaker)
 
 
 def work() -> None:

@@ -10,6 +10,7 @@ from robot_runtime.config import RobotConfig
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
 from tests.server.new_database import place_empty
+from tests.server.postgres import new_archive
 from tests.server.serving import Served, serve
 
 
@@ -27,10 +28,20 @@ def settings() -> Iterator[Settings]:
         )
 
 
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Run the tests of a module that says so on both databases."""
+    own = [mark for mark in metafunc.definition.iter_markers("parametrize") if mark.args[0] == "store"]
+    if "store" in metafunc.fixturenames and getattr(metafunc.module, "BOTH_DATABASES", False) and not own:
+        metafunc.parametrize("store", ["sqlite", "postgresql"], indirect=True)
+
+
 @pytest.fixture
-def store(settings: Settings) -> Iterator[Store]:
-    place_empty(settings.data)
-    store = Store(settings.data.database)
+def store(request: pytest.FixtureRequest, settings: Settings) -> Iterator[Store]:
+    if getattr(request, "param", "sqlite") == "postgresql":
+        settings.data.lab.write_text(new_archive())
+    else:
+        place_empty(settings.data)
+    store = Store(settings.data.database_location)
     yield store
     store.close()
 

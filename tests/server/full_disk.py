@@ -34,6 +34,7 @@ from server.library.film import film_from, write_mp4
 from server.library.listing import Listing
 from server.library.retention import RetentionWorker
 from server.library.scenarios import shipped_scenarios
+from server.platform.disk_reserve import DiskReserve
 from server.platform.disk_space import FileWriteError
 from server.platform.models import SessionRow
 from server.platform.notices import Notices
@@ -210,7 +211,7 @@ async def purge(data: DataFolder, config: Path) -> dict[str, Any]:
     await catalogue.purge(sessions[1])
     await retention.apply(time())
     store.close()
-    store.reserve.make()
+    DiskReserve(data.reserve).make()
     return {
         "reserved": reserved,
         "refused": refused,

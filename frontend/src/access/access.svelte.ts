@@ -18,6 +18,8 @@ export class Access {
   state = $state<'unknown' | 'out' | 'in'>('unknown');
   identity = $state.raw<Identity | null>(null);
   robot = $state('');
+  /** true where the server is a lab's, which has no robot */
+  lab = $state(false);
   /** why somebody who was signed in is so no longer, or why a code did not sign in */
   reason = $state('');
   /** the code of the link that was followed, until it is used; '' where there is none */
@@ -130,6 +132,7 @@ export class Access {
   #take(me: CallerDetails): void {
     this.#operatorsOnly = me.operators_only;
     this.robot = me.robot;
+    this.lab = me.lab;
     this.identity = me.identity;
     this.ends = me.ends;
     if (this.reason === '') this.reason = me.ended;

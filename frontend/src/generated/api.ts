@@ -123,6 +123,9 @@ export interface paths {
     "/api/exports/{export}/file": {
         get: operations["downloadExport"];
     };
+    "/api/figures": {
+        get: operations["getFigureStudy"];
+    };
     "/api/film": {
         get: operations["getFilmPlan"];
         put: operations["chooseFilm"];
@@ -149,6 +152,13 @@ export interface paths {
     };
     "/api/imports": {
         post: operations["importSession"];
+    };
+    "/api/lab/robots": {
+        get: operations["listLabRobots"];
+        post: operations["addLabRobot"];
+    };
+    "/api/lab/robots/{robot}": {
+        delete: operations["removeLabRobot"];
     };
     "/api/layouts": {
         get: operations["listLayouts"];
@@ -307,11 +317,17 @@ export interface paths {
         get: operations["listSessions"];
         post: operations["startSession"];
     };
+    "/api/sessions/archived": {
+        post: operations["noteArchived"];
+    };
     "/api/sessions/controllers": {
         get: operations["listSessionControllers"];
     };
     "/api/sessions/groups": {
         get: operations["listSessionGroups"];
+    };
+    "/api/sessions/robots": {
+        get: operations["listSessionRobots"];
     };
     "/api/sessions/{session}": {
         get: operations["getSession"];
@@ -561,6 +577,10 @@ export interface components {
              */
             step: string;
         };
+        /** @description Sessions that a lab has, by their identifiers. */
+        ArchivedSessions: {
+            identifiers: string[];
+        };
         /** @description Arms the robot. It is refused with all reasons against arming. */
         ArmCommand: {
             /** @description s for which it may go on without the server */
@@ -769,6 +789,8 @@ export interface components {
             /** @description end of the caller's token or reading link, s since 1970 */
             ends: number | null;
             identity: components["schemas"]["Identity"] | null;
+            /** @description true where this server is a lab's, which has no robot */
+            lab: boolean;
             /** @description names of the operations that the caller's role may not call; a reader's are all that do not read the session of the link */
             operators_only: string[];
             pairing_open: boolean;
@@ -1286,6 +1308,29 @@ export interface components {
              */
             words: string;
         };
+        /** @description A session with a remarkable value. */
+        FigureExample: {
+            name: string;
+            /** @description 0: the whole session */
+            segment: number;
+            session: number;
+            value: number;
+        };
+        /** @description The values of one group: their number, and shares of them that are less. */
+        FigureGroup: {
+            /** @description values in each of the bins */
+            bins: number[];
+            count: number;
+            greatest: number;
+            /** @description a quarter of the values is more */
+            high: number;
+            least: number;
+            /** @description a quarter of the values is less */
+            low: number;
+            median: number;
+            /** @description empty: not known */
+            name: string;
+        };
         /** @description The mean of a figure over the seeds, with its 95 % interval; null with one seed. */
         FigureInterval: {
             count: number;
@@ -1314,6 +1359,38 @@ export interface components {
             name: string;
             title: string;
             unit: string;
+        };
+        /** @description The values of the sessions of one period. */
+        FigurePeriod: {
+            count: number;
+            high: number;
+            low: number;
+            median: number;
+            /**
+             * Format: date-time
+             * @description UTC
+             */
+            start: string;
+        };
+        /** @description One figure of many sessions. */
+        FigureStudy: {
+            /** @description values */
+            count: number;
+            course: components["schemas"]["FigurePeriod"][];
+            /** @description of the bins, from the least value on; empty without values */
+            edges: number[];
+            /** @description sessions of the greatest values */
+            greatest: components["schemas"]["FigureExample"][];
+            groups: components["schemas"]["FigureGroup"][];
+            /** @description sessions of the least values */
+            least: components["schemas"]["FigureExample"][];
+            meaning: components["schemas"]["FigureMeaning"];
+            /** @enum {string} */
+            period: "day" | "week" | "month" | "year";
+            /** @description sessions that match */
+            sessions: number;
+            /** @description of these, those whose figures are still to be computed */
+            waiting: number;
         };
         /** @description The film of a session: its times, the number of its pictures, and their coding. */
         FilmDescription: {
@@ -1421,7 +1498,7 @@ export interface components {
         };
         /** @description The health of all parts: "failed" if one has failed, else "starting" if one starts, else "ok". */
         Health: {
-            /** @description server, database, runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker */
+            /** @description server and database; of a robot also runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker */
             parts: components["schemas"]["PartHealth"][];
             robot: string;
             /** @enum {string} */
@@ -1552,6 +1629,27 @@ export interface components {
             wanted: components["schemas"]["ExportOptions"];
         };
         JsonValue: unknown;
+        /** @description A robot of a lab, and what comes of pulling from it. */
+        LabRobot: {
+            /**
+             * Format: date-time
+             * @description UTC
+             */
+            added: string;
+            id: number;
+            /** @description sessions that the archive lacks, as of the last look */
+            lacking: number;
+            name: string;
+            /** @enum {string} */
+            phase: "waiting" | "pulling" | "done" | "armed" | "unreachable" | "failed";
+            /** @description sessions that cannot be pulled, and why; at most ten */
+            problems: string[];
+            /** @description UTC; when it answered last, since the lab was started */
+            seen: string | null;
+            /** @description what it does, or why it does not, as a sentence */
+            text: string;
+            url: string;
+        };
         /** @description A saved layout with its document, which may be of another version of the program. */
         LayoutDetails: {
             /** @description the person who saved it; empty where it is not known */
@@ -1912,6 +2010,16 @@ export interface components {
             /** @description names of topics; null for all. Not for csv-grid, archive and report */
             topics?: string[] | null;
         };
+        /** @description A robot that a lab is to pull from. */
+        NewLabRobot: {
+            /** @description PEM of the robot's certificate; empty with HTTP, and where a public authority signed it */
+            certificate?: string;
+            name: string;
+            /** @description one of the robot's tokens with the scope “operate” */
+            token: string;
+            /** @description its address, such as https://turtle.local:8000 */
+            url: string;
+        };
         /** @description A layout to be saved under a name. */
         NewLayout: {
             /** @description the version that it replaces, 0 for a new layout: refused if somebody has saved another since. null replaces any */
@@ -1998,6 +2106,8 @@ export interface components {
             /** @description end of the caller's token or reading link, s since 1970 */
             ends: number | null;
             identity: components["schemas"]["Identity"] | null;
+            /** @description true where this server is a lab's, which has no robot */
+            lab: boolean;
             /** @description names of the operations that the caller's role may not call; a reader's are all that do not read the session of the link */
             operators_only: string[];
             /** @description shown only this once; null where the browser was signed in already */
@@ -2471,6 +2581,8 @@ export interface components {
         };
         /** @description One recording; "interrupted" if the server ended without closing it: its stored samples remain. */
         Session: {
+            /** @description UTC; time at which a lab said that it has it; null before */
+            archived: string | null;
             /** @description bytes stored, compressed */
             bytes: number;
             /** @description hash of the packet definitions, 8 hexadecimal digits */
@@ -2489,6 +2601,8 @@ export interface components {
             /** @description hash of the firmware, 16 hexadecimal digits; empty where unknown */
             firmware: string;
             id: number;
+            /** @description the same wherever it is imported, 32 hexadecimal digits */
+            identifier: string;
             /** @description protected from the rules of retention */
             kept: boolean;
             /** @description number of bookmarks */
@@ -2539,6 +2653,8 @@ export interface components {
         };
         /** @description A session with all data except the samples. */
         SessionDetail: {
+            /** @description UTC; time at which a lab said that it has it; null before */
+            archived: string | null;
             /** @description bytes stored, compressed */
             bytes: number;
             /** @description robot.toml as it was at the start */
@@ -3410,6 +3526,7 @@ export type ActiveTuning = components['schemas']['ActiveTuning'];
 export type AdoptedCraft = components['schemas']['AdoptedCraft'];
 export type Alarm = components['schemas']['Alarm'];
 export type Align = components['schemas']['Align'];
+export type ArchivedSessions = components['schemas']['ArchivedSessions'];
 export type ArmCommand = components['schemas']['ArmCommand'];
 export type AuditEntry = components['schemas']['AuditEntry'];
 export type AuditList = components['schemas']['AuditList'];
@@ -3464,9 +3581,13 @@ export type EventField = components['schemas']['EventField'];
 export type ExportOptions = components['schemas']['ExportOptions'];
 export type FailureCount = components['schemas']['FailureCount'];
 export type Figure = components['schemas']['Figure'];
+export type FigureExample = components['schemas']['FigureExample'];
+export type FigureGroup = components['schemas']['FigureGroup'];
 export type FigureInterval = components['schemas']['FigureInterval'];
 export type FigureMark = components['schemas']['FigureMark'];
 export type FigureMeaning = components['schemas']['FigureMeaning'];
+export type FigurePeriod = components['schemas']['FigurePeriod'];
+export type FigureStudy = components['schemas']['FigureStudy'];
 export type FilmDescription = components['schemas']['FilmDescription'];
 export type FilmOrder = components['schemas']['FilmOrder'];
 export type FilmPlan = components['schemas']['FilmPlan'];
@@ -3490,6 +3611,7 @@ export type Imported = components['schemas']['Imported'];
 export type ImuRaw = components['schemas']['ImuRaw'];
 export type Job = components['schemas']['Job'];
 export type JsonValue = components['schemas']['JsonValue'];
+export type LabRobot = components['schemas']['LabRobot'];
 export type LayoutDetails = components['schemas']['LayoutDetails'];
 export type LayoutDocument = components['schemas']['LayoutDocument'];
 export type LeftOut = components['schemas']['LeftOut'];
@@ -3526,6 +3648,7 @@ export type Moment = components['schemas']['Moment'];
 export type NewBookmark = components['schemas']['NewBookmark'];
 export type NewCode = components['schemas']['NewCode'];
 export type NewExport = components['schemas']['NewExport'];
+export type NewLabRobot = components['schemas']['NewLabRobot'];
 export type NewLayout = components['schemas']['NewLayout'];
 export type NewMission = components['schemas']['NewMission'];
 export type NewProfile = components['schemas']['NewProfile'];
@@ -4312,6 +4435,46 @@ export interface operations {
             };
         };
     };
+    getFigureStudy: {
+        parameters: {
+            query?: {
+                /** @description words that name, notes, tags or scenario have */
+                search?: string;
+                /** @description tags that they have, all of them */
+                tag?: string[];
+                origin?: ("operator" | "arming" | "scenario" | "simulated" | "import") | null;
+                state?: ("recording" | "complete" | "interrupted") | null;
+                /** @description name of the scenario that they ran */
+                scenario?: string;
+                /** @description title of one that held the depth */
+                controller?: string;
+                /** @description name of the robot that recorded them */
+                robot?: string;
+                /** @description only those with a film */
+                film?: boolean;
+                /** @description only those that the rules of retention never take */
+                kept?: boolean;
+                /** @description started then or later */
+                since?: string | null;
+                /** @description started before */
+                until?: string | null;
+                /** @description those in the bin instead */
+                deleted?: boolean;
+                figure?: "duration" | "deepest" | "rmse" | "cycle_amplitude" | "overshoot" | "settling_time" | "fin_strokes" | "frames_lost" | "alarms";
+                /** @description a value of each session, or of each time with one controller, gains and set point */
+                of?: "session" | "segment";
+                by?: "none" | "controller" | "gains" | "craft" | "firmware" | "software" | "robot";
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["FigureStudy"];
+                };
+            };
+        };
+    };
     getFilmPlan: {
         parameters: { query?: never };
         requestBody?: never;
@@ -4449,6 +4612,40 @@ export interface operations {
                     "application/json": components["schemas"]["Session"];
                 };
             };
+        };
+    };
+    listLabRobots: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["LabRobot"][];
+                };
+            };
+        };
+    };
+    addLabRobot: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewLabRobot"];
+            };
+        };
+        responses: {
+            204: { content?: never };
+        };
+    };
+    removeLabRobot: {
+        parameters: {
+            query?: never;
+            path: {
+                robot: number;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            204: { content?: never };
         };
     };
     listLayouts: {
@@ -5251,6 +5448,8 @@ export interface operations {
                 scenario?: string;
                 /** @description title of one that held the depth */
                 controller?: string;
+                /** @description name of the robot that recorded them */
+                robot?: string;
                 /** @description only those with a film */
                 film?: boolean;
                 /** @description only those that the rules of retention never take */
@@ -5300,6 +5499,17 @@ export interface operations {
             };
         };
     };
+    noteArchived: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ArchivedSessions"];
+            };
+        };
+        responses: {
+            204: { content?: never };
+        };
+    };
     listSessionControllers: {
         parameters: { query?: never };
         requestBody?: never;
@@ -5324,6 +5534,8 @@ export interface operations {
                 scenario?: string;
                 /** @description title of one that held the depth */
                 controller?: string;
+                /** @description name of the robot that recorded them */
+                robot?: string;
                 /** @description only those with a film */
                 film?: boolean;
                 /** @description only those that the rules of retention never take */
@@ -5344,6 +5556,17 @@ export interface operations {
             200: {
                 content: {
                     "application/json": components["schemas"]["SessionGroup"][];
+                };
+            };
+        };
+    };
+    listSessionRobots: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": string[];
                 };
             };
         };

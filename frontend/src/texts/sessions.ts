@@ -21,6 +21,7 @@ export const sessions = {
     title: 'No sessions yet',
     text: 'Recorded sessions are listed here. You can search, tag, replay, compare and export them.',
     recordFirst: 'Record the first session',
+    lab: 'Add a robot under System: its sessions come here by themselves. Or import an archive.',
   },
   album: {
     title: 'Snapshots',
@@ -50,6 +51,8 @@ export const sessions = {
     anyOrigin: 'Any origin',
     controller: 'Controller',
     anyController: 'Any controller',
+    robot: 'Robot',
+    anyRobot: 'Any robot',
     film: 'With film',
     kept: 'Kept',
     since: 'First day',

@@ -1,6 +1,7 @@
 /** Texts around every page: alarms, control, connection, notices. */
 export const shell = {
   name: 'µ-CAT',
+  nameOfLab: 'µ-CAT lab',
   titleOf: (page: string) => `${page} · µ-CAT`,
   pages: 'Pages',
   help: 'Help for this page',
@@ -10,6 +11,7 @@ export const shell = {
   lookingOn: {
     title: 'View only.',
     text: 'You can watch and press STOP.',
+    lab: 'You can read and export every session.',
     link: 'Ask an operator for more rights',
   },
   alarms: {

@@ -4,6 +4,7 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="backup",
+    place="both",
     routes=("server.features.backup.routes:router",),
     commands={
         "backup": "server.features.backup.command:backup",

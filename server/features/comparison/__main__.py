@@ -8,7 +8,6 @@ status is not 200.
 """
 
 import sys
-from pathlib import Path
 
 from robot_runtime.transport.lifetime import end_with_parent, give_way, limit_memory
 
@@ -24,8 +23,9 @@ def main() -> int:
     limit_memory(BYTES_MAX)
     # Here, so that others go first while the libraries are loaded, too.
     from server.features.comparison.tasks import answer_all
+    from server.platform.engine import read_location
 
-    answer_all(Path(sys.argv[1]), sys.stdin.buffer)
+    answer_all(read_location(sys.argv[1]), sys.stdin.buffer)
     return 0
 
 

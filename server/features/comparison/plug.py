@@ -4,20 +4,25 @@ from collections.abc import Coroutine, Sequence
 from typing import Any
 
 from server.feature import Plug
+from server.features.comparison.figure_worker import FigureWorker
 from server.features.comparison.summaries import SummaryWorker
 from server.features.comparison.worker import ComparisonWorker
+from server.platform.settings import Settings
 
 
 class ComparisonPlug(Plug):
     """The plug that has the process read what is new, and ends it with the server."""
 
-    def __init__(self, worker: ComparisonWorker, summaries: SummaryWorker) -> None:
+    def __init__(
+        self, worker: ComparisonWorker, summaries: SummaryWorker, figures: FigureWorker, settings: Settings
+    ) -> None:
+        self._figures = figures if settings.lab else None
         self._worker = worker
         self._summaries = summaries
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
-        """Make summaries of the sessions that have ended."""
-        return (self._summaries.run(),)
+        """Make summaries of the sessions that have ended, and in a lab their figures."""
+        return (self._summaries.run(), *(() if self._figures is None else (self._figures.run(),)))
 
     async def stop(self) -> None:
         """End the process."""

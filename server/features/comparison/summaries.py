@@ -5,8 +5,7 @@ import logging
 from datetime import UTC, datetime
 from functools import partial
 
-from sqlalchemy import Connection, update
-from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy import Connection, insert, update
 from sqlmodel import col, select
 
 from server.analysis.session_name import name_from
@@ -88,7 +87,9 @@ def _store(connection: Connection, session: int, summary: SessionSummary) -> Non
     if row is None:
         return
     values = {"session_id": session, "document": summary.model_dump_json()}
-    connection.execute(insert(SummaryRow).values(values).on_conflict_do_nothing())
+    made = select(SummaryRow.session_id).where(SummaryRow.session_id == session)
+    if connection.execute(made).first() is None:
+        connection.execute(insert(SummaryRow).values(values))
     name = name_from(summary)
     if (
         name

@@ -7,7 +7,9 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
+from server.analysis.archive_figures import list_figures
 from server.analysis.comparer import Comparer
+from server.analysis.figure_schemas import FigureSet
 from server.analysis.report import write_report
 from server.analysis.schemas import ComparisonQuery, LinesQuery, ReportQuery, StoryFiguresQuery
 from server.analysis.signals import Signal
@@ -75,6 +77,11 @@ def summary(comparer: Comparer, query: str) -> bytes:
     return summarise(comparer.reader, json.loads(query)).model_dump_json().encode()
 
 
+def figures(comparer: Comparer, query: str) -> bytes:
+    """Return the figures of the session of this number that an archive keeps, as JSON."""
+    return TypeAdapter(list[FigureSet]).dump_json(list_figures(comparer, json.loads(query)))
+
+
 TASKS: Mapping[str, Task] = {
     "compare": compare,
     "lines": lines,
@@ -86,10 +93,11 @@ TASKS: Mapping[str, Task] = {
     "spectrum": spectrum,
     "pair": pair,
     "summary": summary,
+    "figures": figures,
 }
 
 
-def answer_all(database: Path, tasks: Iterable[bytes]) -> None:
+def answer_all(database: Path | str, tasks: Iterable[bytes]) -> None:
     """Answer each task, a line of JSON, on the standard output."""
     reader = Reader(database)
     comparer = Comparer(reader)

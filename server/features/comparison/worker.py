@@ -19,6 +19,7 @@ Task = Literal[
     "spectrum",
     "pair",
     "summary",
+    "figures",
 ]
 
 SECONDS_MAX = 120.0
@@ -43,7 +44,7 @@ class ComparisonWorker:
     """
 
     def __init__(self, folder: DataFolder) -> None:
-        self._database = folder.database
+        self._database = folder.database_location
         self._turn = asyncio.Lock()
         self._process: TaskProcess | None = None
         self._idle: asyncio.TimerHandle | None = None
@@ -82,7 +83,7 @@ class ComparisonWorker:
             self._process = None
 
 
-async def _start(database: Path) -> TaskProcess:
+async def _start(database: Path | str) -> TaskProcess:
     try:
         return await TaskProcess.start("server.features.comparison", str(database))
     except OSError as problem:

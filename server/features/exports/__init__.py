@@ -4,10 +4,12 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="exports",
+    place="both",
     routes=("server.features.exports.routes:router",),
     commands={
         "export": "server.features.exports.command:export_session",
         "import": "server.features.exports.command:import_session",
+        "lab lake": "server.features.exports.lake_command:lake",
     },
     plug="server.features.exports.plug:ExportsPlug",
 )

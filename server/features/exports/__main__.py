@@ -1,9 +1,10 @@
 """Writes one export, or checks one archive, in a process beside the server.
 
     python -m server.features.exports write DATABASE IDENTIFIER OPTIONS PATH
-    python -m server.features.exports examine PATH ROWS
+    python -m server.features.exports examine PATH ROWS [MERGED]
 
-IDENTIFIER is the session's. ROWS is the file to which `examine` writes the rows of the session. OPTIONS are
+IDENTIFIER is the session's. ROWS is the file to which `examine` writes the rows of the session,
+MERGED the one for the archive with its chunks merged. OPTIONS are
 ExportOptions as JSON. It prints lines of JSON: {"progress": 0..1}, and last {"bytes", "sha256"},
 {"examined": true} or {"problem": text}.
 """
@@ -36,9 +37,9 @@ def main() -> int:
     try:
         match sys.argv[1:]:
             case ["write", database, session, options, path]:
-                _write(Path(database), session, options, Path(path))
-            case ["examine", path, rows]:
-                _examine(Path(path), Path(rows))
+                _write(database, session, options, Path(path))
+            case ["examine", path, rows, *merged]:
+                _examine(Path(path), Path(rows), [Path(file) for file in merged])
             case _:
                 sys.exit(__doc__)
     except ApiError as problem:
@@ -50,14 +51,15 @@ def main() -> int:
     return 0
 
 
-def _write(database: Path, identifier: str, asked: str, path: Path) -> None:
+def _write(database: str, identifier: str, asked: str, path: Path) -> None:
     from server.features.exports.files import write_part
     from server.features.exports.formats import check
     from server.features.exports.schemas import ExportOptions
     from server.features.exports.selection import ExportSelection, find_identified
+    from server.platform.engine import read_location
     from server.platform.store import Reader
 
-    store, options = Reader(database), ExportOptions.model_validate_json(asked)
+    store, options = Reader(read_location(database)), ExportOptions.model_validate_json(asked)
     source = ExportSelection(store, find_identified(store, identifier), options, _Progress().tell)
     kind = check(options)
     # A workbook's sheets are written there first: /tmp may lie in memory.
@@ -65,10 +67,13 @@ def _write(database: Path, identifier: str, asked: str, path: Path) -> None:
     _report(write_part(path, lambda output: kind.write_unpurged(store, source, output))._asdict())
 
 
-def _examine(path: Path, rows: Path) -> None:
+def _examine(path: Path, rows: Path, merged: list[Path]) -> None:
+    from server.features.exports.archive_merging import write_merged
     from server.features.exports.archive_reader import examine
 
     examine(path, rows, _Progress().tell)
+    for file in merged:
+        write_merged(path, file)
     _report({"examined": True})
 
 

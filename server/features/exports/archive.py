@@ -28,7 +28,7 @@ def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> N
         raise ExportRequestError(
             "The session is still being recorded. Stop the recording, then make the archive."
         )
-    members = _SummedMembers(output)
+    members = SummedMembers(output)
     with members.member(SESSION) as write:
         write(json.dumps(_describe(store, source), indent=1, ensure_ascii=False).encode())
     for name in source.names:
@@ -38,7 +38,7 @@ def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> N
     members.close()
 
 
-class _SummedMembers:
+class SummedMembers:
     """Members of the zip file, and their checksums."""
 
     def __init__(self, output: BinaryIO) -> None:
@@ -47,6 +47,7 @@ class _SummedMembers:
 
     @contextmanager
     def member(self, name: str) -> Iterator[Any]:
+        """Open a member; yield the function that writes it."""
         checksum = hashlib.sha256()
         with self._packing.member(name) as file:
 
@@ -58,13 +59,14 @@ class _SummedMembers:
         self._sums[name] = checksum.hexdigest()
 
     def close(self) -> None:
+        """Write the checksums, and end the file."""
         self._packing.text(CHECKSUMS, json.dumps(self._sums, indent=1))
         self._packing.close()
 
 
 def _describe(store: Reader, source: ExportSelection) -> dict[str, Any]:
     row = source.row
-    session = row.model_dump(exclude={"id", "deleted", "kept"})
+    session = row.model_dump(exclude={"id", "deleted", "kept", "archived"})
     session |= {"robot_state": json.loads(row.robot_state), "topics": json.loads(row.topics)}
     with store.read() as database:
 

@@ -7,7 +7,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from robot_runtime.contract.topics import TIME
 from server.platform.schema_base import Schema
-from server.recording.schemas import GapKind
+from server.recording.schemas import GapKind, Origin
 
 CODES = "bBhHiIqQfd?"
 TOPICS_MAX = 200
@@ -87,6 +87,7 @@ class ArchivedSession(_Strict):
     scenario: Text = ""
     scenario_name: Words = ""
     seed: Annotated[int, Field(ge=-(1 << 62), lt=1 << 62)] | None = None
+    origin: Origin = "import"
     firmware: Words = ""
     software: Words = ""
 

@@ -102,9 +102,10 @@ class Archive(ArchiveChunks):
 
     def __init__(self, zipped: zipfile.ZipFile, size: int) -> None:
         super().__init__(zipped, size)
-        self._sums = self._read_json(CHECKSUMS)
+        self._sums = self._parse(CHECKSUMS, self._read(CHECKSUMS))
         if not isinstance(self._sums, dict):
             raise ArchiveError(f"{CHECKSUMS} is not an object.")
+        self.described_session = self._read(SESSION)
         self.content, self.described_topics = self._session()
         """The content of `session.json`, and its descriptions of topics word for word."""
         strange = [name for name in self.topics if name not in self.content.session.topics]
@@ -133,18 +134,21 @@ class Archive(ArchiveChunks):
                     raise ArchiveError(f"Chunk {chunk.number} of {topic} is damaged: {problem}.") from problem
             report(0.5 + 0.5 * (index + 1) / len(self.topics))
 
-    def _read_json(self, name: str) -> Any:
+    def _read(self, name: str) -> bytes:
         with self._zipped.open(self._members[name]) as file:
             text = file.read(SESSION_BYTES_MAX + 1)
         if len(text) > SESSION_BYTES_MAX:
             raise ArchiveError(f"{name} is longer than {SESSION_BYTES_MAX} bytes.")
+        return text
+
+    def _parse(self, name: str, text: bytes) -> Any:
         try:
             return json.loads(text)
         except (ValueError, RecursionError) as problem:
             raise ArchiveError(f"{name} is not JSON: {problem}") from problem
 
     def _session(self) -> tuple[ArchivedDocument, dict[str, Any]]:
-        document = self._read_json(SESSION)
+        document = self._parse(SESSION, self.described_session)
         if not isinstance(document, dict) or document.get("format") != FORMAT:
             raise ArchiveError(
                 f"Its {SESSION} is not that of an archive; export the session in the format archive."

@@ -21,6 +21,7 @@ from robot_runtime.errors import RefusedError
 from server.features.exports.archive_reader import ROWS_AT_ONCE, ArchiveChunks, ArchiveError, open_archive
 from server.features.exports.export_process import ExportProcess, ExportProcessError
 from server.http.uploads import save_upload
+from server.library.intake import ArchiveIntake
 from server.platform.disk_space import FileWriteError, explain_write_error, require_free
 from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag
 from server.platform.settings import DataFolder
@@ -35,7 +36,7 @@ COPIES = 2
 """During an import a session is on the disk twice: as the archive and in the database."""
 
 
-class Imports:
+class Imports(ArchiveIntake):
     """The imports of a server, one at a time."""
 
     def __init__(self, folder: DataFolder, store: Store) -> None:
@@ -81,31 +82,45 @@ class Imports:
             require_free(self._data, path.stat().st_size)
             return await self._take(path)
 
-    async def _take(self, path: Path) -> int:
+    async def take_merged(self, path: Path) -> int:
+        """Import the archive in a file as a lab keeps it. Raise as `receive`."""
+        async with self._busy:
+            require_free(self._data, COPIES * path.stat().st_size)
+            merged = self._folder / (token_hex(8) + PART)
+            try:
+                return await self._take(path, merged)
+            finally:
+                await asyncio.to_thread(merged.unlink, missing_ok=True)
+
+    async def _take(self, path: Path, merged: Path | None = None) -> int:
         # The process that checks it gives way to all others: on a busy computer it needs a minute to begin.
         if not await asyncio.to_thread(zipfile.is_zipfile, path):
             raise ArchiveError("The archive cannot be imported. It is no zip file, or it is cut off.")
         rows = self._folder / (token_hex(8) + PART)
         try:
             await asyncio.to_thread(make_folder, self._folder)
+            files = [path, rows] if merged is None else [path, rows, merged]
             try:
-                await ExportProcess(["examine", str(path), str(rows)], lambda _: None).run()
+                await ExportProcess(["examine", *map(str, files)], lambda _: None).run()
             except ExportProcessError as problem:
                 raise ArchiveError(f"The archive cannot be imported. {problem}") from problem
-            return await self._store_session(path, rows)
+            if merged is None:
+                return await self._store_session(path, rows, origin="import")
+            return await self._store_session(merged, rows)
         except OSError as problem:
             raise FileWriteError(explain_write_error(problem, rows)) from problem
         finally:
             await asyncio.to_thread(rows.unlink, missing_ok=True)
 
-    async def _store_session(self, path: Path, rows: Path) -> int:
+    async def _store_session(self, path: Path, rows: Path, **changes: str) -> int:
         # An import whose end could not even be marked is one of these: they are one at a time.
         await self._drop_unfinished()
         lines = _read_lines(rows)
         first = await asyncio.to_thread(next, lines)
         session: dict[str, Any] = first["session"]
         await asyncio.to_thread(self._refuse_known, session["identifier"])
-        values = session | {"state": IMPORTING, "origin": "import", "samples": 0, "bytes": 0, "kept": False}
+        values = session | changes
+        values |= {"state": IMPORTING, "samples": 0, "bytes": 0, "kept": False}
         number = await self._store.write(lambda connection: insert_row(connection, SessionRow, values))
         try:
             await self._fill(number, lines)

@@ -55,7 +55,7 @@ class Jobs:
 
     def __init__(self, folder: DataFolder, store: Store, clock: Clock) -> None:
         self._folder = folder.exports
-        self._database = folder.database
+        self._database = store.location
         self._store = store
         self._wall_clock = WallClock(clock, folder.wall_clock)
         self._jobs: dict[str, Job] = {}

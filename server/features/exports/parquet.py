@@ -37,11 +37,12 @@ def write_parquet(store: Reader, source: ExportSelection, output: BinaryIO) -> N
     write_about(store, source, packing)
     for name in source.names:
         with packing.member(f"{name}.parquet") as file:
-            _write_topic(source, name, file)
+            write_topic(source, name, file)
     packing.close()
 
 
-def _write_topic(source: ExportSelection, name: str, file: Any) -> None:
+def write_topic(source: ExportSelection, name: str, file: Any) -> None:
+    """Write a Parquet file of one topic, with the columns of `write_parquet`."""
     import pyarrow as pa
     from pyarrow.parquet import ParquetWriter
 

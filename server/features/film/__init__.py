@@ -1,4 +1,4 @@
-"""Film: the camera's pictures, recorded with a session and played from it."""
+"""Film: the camera's pictures, recorded with a session."""
 
 from server.feature import Feature
 from server.features.film.config import FilmConfig

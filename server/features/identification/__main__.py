@@ -18,6 +18,7 @@ from robot_runtime.errors import RefusedError
 from robot_runtime.transport.lifetime import end_with_parent, give_way, limit_memory
 from server.features.identification.run import run_identification
 from server.features.identification.schemas import IdentificationStart
+from server.platform.engine import read_location
 from server.platform.errors import ApiError
 from server.platform.store import Reader
 
@@ -35,7 +36,7 @@ def main() -> int:
     chosen = IdentificationStart.model_validate_json(choice)
     try:
         result = run_identification(
-            Reader(Path(database)),
+            Reader(read_location(database)),
             chosen.sessions,
             chosen.left_out,
             craft_in(Path(craft)),

@@ -102,7 +102,7 @@ class IdentificationRunner:
 
     async def _fit(self, choice: IdentificationStart) -> tuple[str, IdentificationResult | None]:
         """Problem and result of the process; one of them is empty."""
-        database, craft = self._settings.data.database, self._settings.craft_file
+        database, craft = self._settings.data.database_location, self._settings.craft_file
         with SideProcess(
             "server.features.identification",
             [str(database), str(craft), choice.model_dump_json()],

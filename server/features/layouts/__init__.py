@@ -4,5 +4,6 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="layouts",
+    place="both",
     routes=("server.features.layouts.routes:router",),
 )

@@ -2,8 +2,4 @@
 
 from server.feature import Feature
 
-FEATURE = Feature(
-    name="lease",
-    routes=("server.features.lease.routes:router",),
-    plug="server.features.lease.plug:LeasePlug",
-)
+FEATURE = Feature(name="lease", routes=("server.features.lease.routes:router",))

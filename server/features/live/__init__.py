@@ -4,5 +4,6 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="live",
+    place="both",
     routes=("server.features.live.routes:router", "server.features.live.past_routes:router"),
 )

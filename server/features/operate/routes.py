@@ -1,4 +1,4 @@
-"""The robot: its state, health and link, and commands to it, which the runtime checks again."""
+"""The robot: its state and link, and commands to it, which the runtime checks again."""
 
 from dataclasses import fields
 from typing import Any
@@ -16,7 +16,7 @@ from server.driving.checked_commands import (
     explain_unknown_command,
 )
 from server.driving.schemas import Restored
-from server.health.monitor import Health, HealthMonitor
+from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
@@ -42,30 +42,6 @@ class LinkFrames(Schema):
     time: float = Field(description="now, s, steady clock")
     frames: list[Dissection]
     fault: LinkFault | None = Field(description="null if there was none since the runtime started")
-
-
-class NotAliveError(UnavailableError):
-    """The database or the robot's runtime fails"""
-
-
-@router.operation("GET /health", Need.VIEWER, tags=["health"])
-async def get_health(monitor: Provided[HealthMonitor]) -> Health:
-    """Return the health of the server and of every part of the robot.
-
-    Answered with 200 while the server runs; `status` sums the parts up.
-    """
-    return monitor.health()
-
-
-@router.operation("GET /alive", Need.NOTHING, NotAliveError, tags=["health"])
-async def check_alive(monitor: Provided[HealthMonitor]) -> None:
-    """Check that the robot works.
-
-    Without a sign-in and without data, for programs that watch computers: 204, or 503 where the database or
-    the robot's runtime fails.
-    """
-    if not monitor.alive:
-        raise NotAliveError("The database or the robot's runtime fails. /api/health says which, and why.")
 
 
 @router.operation("GET /link/frames", Need.VIEWER, RuntimeSilentError, tags=["link"])

@@ -4,5 +4,6 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="panels",
+    place="both",
     routes=("server.features.panels.routes:router",),
 )

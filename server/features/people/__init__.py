@@ -4,6 +4,7 @@ from server.feature import Feature
 
 FEATURE = Feature(
     name="people",
+    place="both",
     routes=(
         "server.features.people.routes:router",
         "server.features.people.reading_links:router",

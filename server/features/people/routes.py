@@ -182,6 +182,7 @@ def describe_caller(
     return CallerDetails(
         signed_in=identity is not None,
         robot=settings.robot.name,
+        lab=settings.lab,
         identity=identity,
         ended=request.scope.get(SIGN_IN_ENDED, "") if identity is None else "",
         pairing_open=access.codes.any_valid,

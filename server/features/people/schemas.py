@@ -20,6 +20,7 @@ class CallerDetails(Schema):
 
     signed_in: bool
     robot: str
+    lab: bool = Field(description="true where this server is a lab's, which has no robot")
     identity: Identity | None
     ended: Annotated[str, Field(description="why the sign-in that was shown counts no longer; else empty")]
     pairing_open: bool

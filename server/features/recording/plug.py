@@ -1,57 +1,30 @@
 """The plug of recording: samples are stored from the start of a session to its end."""
 
 import asyncio
-import json
 from collections.abc import Coroutine, Sequence
 from contextlib import suppress
-from typing import Any, ClassVar
+from typing import Any
 
-from robot_runtime.clock import Clock
 from robot_runtime.contract.topics import SENT_BY, STATE
 from robot_runtime.control.alarms import Alarms
 from server.feature import Plug
 from server.health.occupation import Occupation
 from server.health.plug import ServerStart
-from server.platform.notices import Notices
 from server.platform.pidfile import running_parts
 from server.platform.settings import Settings
-from server.platform.store import Store, StoreError
+from server.platform.store import StoreError
 from server.processes.supervisor import ProcessSupervisor
+from server.recording.plug import announce
 from server.recording.provenance import ProvenanceWatch
 from server.recording.recorder import TICK_SECONDS, Recorder, RecordingRefusedError
 from server.recording.resume import find_missing
-from server.services import Maker
 from server.stream.bridge import Bridge
 from server.stream.feed import Feed
 from server.stream.hub import Hub
 
 
-def make_provenance(settings: Settings, bridge: Bridge, notices: Notices) -> ProvenanceWatch:
-    """Return the watch of the robot's provenance."""
-    return ProvenanceWatch(settings, lambda: bridge.query("provenance"), notices)
-
-
-def make_recorder(
-    store: Store, clock: Clock, notices: Notices, hub: Hub, provenance: ProvenanceWatch
-) -> Recorder:
-    """Return the recorder, which sends every change of the recording session to the pages."""
-    recorder = Recorder(store, clock, notices, lambda: announce(recorder, hub), provenance)
-    return recorder
-
-
-def announce(recorder: Recorder, hub: Hub) -> None:
-    """Send the recording session to the pages."""
-    session = recorder.session
-    hub.notify({"op": "session", "recording": session and json.loads(session.model_dump_json())})
-
-
 class RecordingPlug(Plug):
     """The plug that records, continues a killed server's recording, and ends it with the server."""
-
-    makers: ClassVar[tuple[Maker, ...]] = (
-        make_provenance,
-        make_recorder,
-    )
 
     def __init__(
         self,

@@ -5,8 +5,13 @@ from server.library.config import SessionsConfig
 
 FEATURE = Feature(
     name="sessions",
+    place="both",
     section=SessionsConfig,
-    routes=("server.features.sessions.routes:router", "server.features.sessions.bookmark_routes:router"),
+    routes=(
+        "server.features.sessions.routes:router",
+        "server.features.sessions.bookmark_routes:router",
+        "server.features.sessions.film_routes:router",
+    ),
     commands={
         "sessions": "server.features.sessions.command:sessions",
         "record": "server.features.sessions.command:record",

@@ -19,6 +19,7 @@ from server.library.opening import SECONDS_MAX, Moment, OpenRecording
 from server.library.replay import HISTORY_MAX, read_blocks_between
 from server.library.retention import RetentionWorker
 from server.library.schemas import (
+    ArchivedSessions,
     SessionChanges,
     SessionDetail,
     SessionGroup,
@@ -85,6 +86,12 @@ def list_session_groups(
 def list_session_controllers(catalogue: Provided[Catalogue]) -> list[str]:
     """List the titles of the controllers that held the depth in some session; at most a hundred."""
     return catalogue.controllers()
+
+
+@router.operation("GET /sessions/robots", Need.VIEWER)
+def list_session_robots(catalogue: Provided[Catalogue]) -> list[str]:
+    """List the names of the robots that recorded some session; at most a hundred."""
+    return catalogue.robots()
 
 
 @router.operation("GET /tags", Need.VIEWER)
@@ -212,6 +219,15 @@ def get_blocks(
         blocks = read_blocks_between(recording, zero + start, zero + end, history)
     headers = {LEFT_OUT: str(blocks.left_out), "Cache-Control": "no-store"}
     return Response(blocks.data, media_type="application/octet-stream", headers=headers)
+
+
+@router.operation("POST /sessions/archived", Need.OPERATOR)
+async def note_archived(catalogue: Provided[Catalogue], body: ArchivedSessions) -> None:
+    """Note that a lab has these sessions: where the disk is short of space, they go first.
+
+    Sessions that are not here are passed over.
+    """
+    await catalogue.note_archived(body.identifiers)
 
 
 @router.operation("GET /storage", Need.VIEWER)

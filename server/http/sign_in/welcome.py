@@ -20,8 +20,9 @@ def welcome(
     stored in a log, and is not always read at the robot.
     """
     base = settings.base_url()
+    kind = "lab" if settings.lab else settings.robot.mode
     lines = [
-        f"µ-CAT {VERSION} ({settings.robot.mode}): {base}/ (data in {settings.data.path})",
+        f"µ-CAT {VERSION} ({kind}): {base}/ (data in {settings.data.path})",
         f"Its configuration is {settings.config}.",
         _reach(settings),
     ]

@@ -12,7 +12,8 @@ from server.http.error_handlers import add_error_handlers
 from server.http.sign_in.pairing_codes import TooManyTriesError
 from server.library.content import RecordingError
 from server.platform.errors import ApiError
-from server.platform.store import FULL, StoreError
+from server.platform.sqlite import FULL
+from server.platform.store import StoreError
 from server.stream.bridge import RuntimeSilentError
 
 

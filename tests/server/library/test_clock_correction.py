@@ -25,6 +25,8 @@ AHEAD = RIGHT - 1000.0
 OLD, YESTERDAY = 500.0, RIGHT - 86_400.0
 """A clock that was never set, and one that Raspberry Pi OS has continued from its last end."""
 
+BOTH_DATABASES = True
+
 
 class Pi:
     """A computer whose clock is wrong at first."""

@@ -11,6 +11,8 @@ from server.recording.session import find_row
 from tests.server.blocks import debug_block, depth_block, picture_block, state_block, thumbnail_block
 from tests.server.features.exports.recordings import record
 
+BOTH_DATABASES = True
+
 
 def read(store: Store, session: int) -> Recording:
     row = find_row(store, session)
@@ -83,7 +85,7 @@ def test_changes_are_documents_that_differ_from_the_one_before(store: Store, set
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ("data = x'00'", "is damaged"),
+        ("data = ''", "is damaged"),
         ("encoding = 'other'", "is of another version: it is encoded as 'other'"),
     ],
 )

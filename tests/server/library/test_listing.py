@@ -34,6 +34,8 @@ from tests.server.blocks import depth_block
 from tests.server.features.exports.recordings import STARTED_STEADY, record
 from tests.server.serving import Served
 
+BOTH_DATABASES = True
+
 
 def execute(store: Store, statement: Executable, *rows: dict[str, Any]) -> None:
     """Execute a statement, for each of these rows."""

@@ -3,6 +3,7 @@
 import asyncio
 import json
 import shutil
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import pytest
@@ -29,6 +30,8 @@ from tests.server.blocks import depth_block, film_block
 from tests.server.waiting import SECONDS
 
 NOW = 1.9e9
+
+BOTH_DATABASES = True
 
 
 class Disk(NamedTuple):
@@ -171,6 +174,7 @@ async def test_an_interrupted_purge_is_resumed(keeper: Keeper) -> None:
     assert (keeper.count(SessionRow), keeper.count(Chunk)) == (0, 0)
 
 
+@pytest.mark.parametrize("store", ["sqlite"], indirect=True)
 async def test_a_purge_returns_space_to_the_disk(monkeypatch: pytest.MonkeyPatch, keeper: Keeper) -> None:
     monkeypatch.setattr(tidying_module, "PAGES_AT_ONCE", 4)
     monkeypatch.setattr(tidying_module, "PAUSE", 0.0)
@@ -273,6 +277,7 @@ async def test_where_space_is_short_the_oldest_films_go_before_any_session(
     ]
 
 
+@pytest.mark.parametrize("store", ["sqlite"], indirect=True)
 def test_free_space_is_read_from_the_real_disk(store: Store, settings: Settings) -> None:
     shown = storage_module.measure(store, settings)
     assert shown.total == shutil.disk_usage(settings.data.path).total
@@ -358,3 +363,29 @@ async def test_the_bytes_that_are_still_to_be_removed_become_fewer(
     assert sizes == sorted(sizes, reverse=True)
     assert len(set(sizes)) == 4
     assert (sizes[-1], remaining[-1], keeper.count(Gap)) == (0, (0, 0), 0)
+
+
+async def test_where_space_is_short_what_a_lab_has_goes_first(
+    monkeypatch: pytest.MonkeyPatch, store: Store, settings: Settings
+) -> None:
+    free = 10**9
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: Disk(10**10, 0, free))
+    keeper = Keeper(store, settings, SessionsConfig(keep_free=1.0))
+    for index, name in enumerate(("oldest", "older", "newest")):
+        await keeper.record(name, (9 - index) * DAY, chunks=60)
+    await keeper.catalogue.note_archived([keeper.catalogue.find(3).identifier, "0" * 32])
+    free = 10**9 - 16_384
+    await keeper.retention.apply(NOW)
+    assert (keeper.names(), keeper.names(deleted=True)) == (["older", "oldest"], ["newest"])
+    assert "a lab has them" in keeper.notice_texts[-1]
+
+
+async def test_a_lab_removes_nothing_by_itself(
+    monkeypatch: pytest.MonkeyPatch, store: Store, settings: Settings
+) -> None:
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: Disk(10**10, 0, 0))
+    rules = SessionsConfig(keep_free=1.0, keep_days=1.0)
+    keeper = Keeper(store, replace(settings, lab=True), rules)
+    await keeper.record("old", 9 * DAY)
+    await keeper.retention.apply(NOW)
+    assert keeper.names() == ["old"]

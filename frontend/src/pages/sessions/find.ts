@@ -8,6 +8,7 @@ export interface Filters {
   readonly tags: readonly string[];
   readonly origin: Session['origin'] | '';
   readonly controller: string;
+  readonly robot: string;
   readonly film: boolean;
   readonly kept: boolean;
   /** local days, 2026-05-31; '' for no limit */
@@ -18,7 +19,7 @@ export interface Filters {
 
 export const ORIGINS = ['operator', 'arming', 'scenario', 'simulated', 'import'] as const satisfies readonly Session['origin'][];
 export const GROUPINGS = ['none', 'day', 'scenario', 'mission'] as const satisfies readonly SessionGrouping[];
-const LENGTHS = { search: 200, controller: 100 };
+const LENGTHS = { search: 200, controller: 100, robot: 100 };
 
 /** The tags with a new one; what is empty or there already adds nothing. A comma separates several. */
 export function withTags(tags: readonly string[], text: string): string[] {
@@ -38,6 +39,7 @@ export function readFilters(seen: Seen): Filters {
     tags: withTags([], text('tag')).slice(0, 20),
     origin: ORIGINS.find((origin) => origin === text('origin')) ?? '',
     controller: text('controller').slice(0, LENGTHS.controller),
+    robot: text('robot').slice(0, LENGTHS.robot),
     film: text('film') === '1',
     kept: text('kept') === '1',
     since: day(text('since')) === null ? '' : text('since'),
@@ -54,6 +56,7 @@ export function writeFilters(filters: Filters): Record<string, string | null> {
     tag: given(filters.tags.join(',')),
     origin: given(filters.origin),
     controller: given(filters.controller),
+    robot: given(filters.robot),
     film: filters.film ? '1' : null,
     kept: filters.kept ? '1' : null,
     since: given(filters.since),
@@ -75,6 +78,7 @@ export function queryOf(filters: Filters): SessionQuery {
     ...(filters.tags.length === 0 ? {} : { tag: [...filters.tags] }),
     ...(filters.origin === '' ? {} : { origin: filters.origin }),
     ...(filters.controller === '' ? {} : { controller: filters.controller }),
+    ...(filters.robot === '' ? {} : { robot: filters.robot }),
     ...(filters.film ? { film: true } : {}),
     ...(filters.kept ? { kept: true } : {}),
     ...(since === null ? {} : { since: since.toISOString() }),

@@ -36,7 +36,8 @@ from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionT
 from server.platform.notices import Notices
 from server.platform.schema import prepare
 from server.platform.settings import DataFolder, Settings, make_folders
-from server.platform.store import FULL, Reader, Store, StoreError
+from server.platform.sqlite import FULL
+from server.platform.store import Reader, Store, StoreError
 from server.recording.session import IMPORTING, REMOVING, UnknownSessionError, find_row
 from tests.server.blocks import debug_block, depth_block, state_block
 from tests.server.features.exports.recordings import record, record_batches
@@ -45,6 +46,8 @@ from tests.server.serving import serve
 from tests.waiting import SECONDS
 
 Members = dict[str, bytes]
+
+BOTH_DATABASES = True
 
 
 @pytest.fixture

@@ -40,7 +40,7 @@ def make_arbiter(
     )
 
 
-class LeasePlug(Plug):
+class DrivingPlug(Plug):
     """The plug that takes control from dismissed clients, and informs the runtime."""
 
     makers: ClassVar[tuple[Maker, ...]] = (make_sync, make_arbiter)

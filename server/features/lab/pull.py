@@ -1,0 +1,230 @@
+"""The pull: a lab fetches from its robots the sessions that its archive lacks.
+
+Each is made an archive of on the robot, downloaded (continued where it broke off), compared with its
+checksum, checked and stored as an import, and only then reported to the robot. A session is known by its
+identifier, so that none is there twice. Whatever fails is tried again at the next look; an archive that
+cannot be read, such as one of a newer version, after the lab's next start.
+"""
+
+import asyncio
+import logging
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import partial
+from threading import Event
+from time import time
+
+from sqlalchemy import Connection, insert
+from sqlmodel import col, select
+
+from robot_runtime.durable_files import PART, make_folder
+from robot_runtime.errors import RefusedError
+from server.features.lab.robot_client import (
+    PullStoppedError,
+    RobotAnswerError,
+    RobotClient,
+    RobotsExport,
+    RobotsSession,
+)
+from server.features.lab.robots import LabRobots
+from server.features.lab.schemas import LabRobot, Phase
+from server.library.intake import ArchiveIntake
+from server.library.schemas import ARCHIVED_MAX
+from server.platform.database_copies import sum_file
+from server.platform.disk_space import FileWriteError, require_free
+from server.platform.errors import InvalidError
+from server.platform.models import LabRobotRow, PulledSessionRow, SessionRow
+from server.platform.settings import DataFolder
+from server.platform.store import Store, StoreError
+from server.recording.session import HIDDEN
+
+log = logging.getLogger(__name__)
+
+PERIOD = 30.0
+"""s between two looks at the robots."""
+EXPORT_PAUSE = 0.5
+"""s between two looks at an archive that a robot makes."""
+COPIES = 3
+"""A session is there as the archive, as the merged archive and in the database."""
+PROBLEMS_SHOWN = 10
+IDENTIFIERS_AT_ONCE = 500
+
+
+@dataclass(slots=True)
+class _Progress:
+    phase: Phase = "waiting"
+    text: str = "It was not looked at yet."
+    lacking: int = 0
+    seen: float | None = None
+    problems: dict[str, str] = field(default_factory=dict)
+    """By the identifiers of sessions that cannot be read."""
+
+
+class SessionPull:
+    """The pull from all robots of a lab, one robot and one session at a time."""
+
+    def __init__(self, store: Store, robots: LabRobots, intake: ArchiveIntake, folder: DataFolder) -> None:
+        self._store = store
+        self._robots = robots
+        self._intake = intake
+        self._folder = folder.pulls
+        self._progress: defaultdict[int, _Progress] = defaultdict(_Progress)
+        self._stopping = Event()
+        self._wake = asyncio.Event()
+
+    def listed(self) -> list[LabRobot]:
+        """Return the robots, and what comes of pulling from them. Raise StoreError."""
+        return [_describe(row, self._progress[row.id or 0]) for row in self._robots.listed()]
+
+    def wake(self) -> None:
+        """Look at the robots soon."""
+        self._wake.set()
+
+    def stop(self) -> None:
+        """End a download: what has arrived stays."""
+        self._stopping.set()
+
+    async def run(self) -> None:
+        """Pull for ever."""
+        while True:
+            self._wake.clear()
+            try:
+                for robot in await asyncio.to_thread(self._robots.listed):
+                    await self.pull(robot)
+            except StoreError as problem:
+                log.warning("nothing is pulled: %s", problem)
+            with suppress(TimeoutError):
+                async with asyncio.timeout(PERIOD):
+                    await self._wake.wait()
+
+    async def pull(self, robot: LabRobotRow) -> None:
+        """Pull what is lacking from one robot now. Raise StoreError."""
+        progress = self._progress[robot.id or 0]
+        client = RobotClient(robot, self._stopping)
+        try:
+            await self._pull(client, robot, progress)
+        except RobotAnswerError as problem:
+            progress.phase, progress.text = "failed" if problem.status else "unreachable", str(problem)
+        except (FileWriteError, OSError) as problem:
+            progress.phase, progress.text = "failed", str(problem)
+        except PullStoppedError:
+            return
+
+    async def _pull(self, client: RobotClient, robot: LabRobotRow, progress: _Progress) -> None:
+        sessions = await asyncio.to_thread(client.sessions)
+        progress.seen = time()
+        stored, pulled = await asyncio.to_thread(
+            self._find_known, [session.identifier for session in sessions]
+        )
+        lacking = [entry for entry in sessions if entry.identifier not in stored | pulled]
+        for number, session in enumerate(lacking):
+            if session.identifier in progress.problems:
+                continue
+            # It may be armed at any time, and what a robot does under water goes first.
+            if await asyncio.to_thread(client.is_armed):
+                progress.phase, progress.text = "armed", "It is armed. Its sessions are pulled afterwards."
+                progress.lacking = len(lacking) - number
+                return
+            progress.lacking = len(lacking) - number
+            progress.phase, progress.text = "pulling", f"Its session “{session.name}” is being pulled."
+            if await self._take(client, session, progress):
+                stored.add(session.identifier)
+                await self._store.write(partial(_note, session=session, robot=robot.name))
+        await self._report(
+            client, [entry for entry in sessions if entry.identifier in stored and not entry.archived]
+        )
+        progress.seen = time()
+        progress.lacking = sum(entry.identifier not in stored | pulled for entry in sessions)
+        if progress.problems:
+            progress.phase, progress.text = "failed", "Some of its sessions cannot be pulled."
+        else:
+            progress.phase, progress.text = "done", "All of its sessions are in the archive."
+
+    def _find_known(self, identifiers: Sequence[str]) -> tuple[set[str], set[str]]:
+        """Return those that are in the archive, and those that are there no longer, or in its bin."""
+        here: set[str] = set()
+        gone: set[str] = set()
+        with self._store.read() as database:
+            for some in _parts(identifiers, IDENTIFIERS_AT_ONCE):
+                columns = select(SessionRow.identifier, SessionRow.state, SessionRow.deleted)
+                for identifier, state, deleted in database.exec(
+                    columns.where(col(SessionRow.identifier).in_(some))
+                ):
+                    (here if state not in HIDDEN and deleted is None else gone).add(identifier)
+                those = col(PulledSessionRow.identifier).in_(some)
+                gone.update(database.exec(select(PulledSessionRow.identifier).where(those)))
+        return here, gone - here
+
+    async def _take(self, client: RobotClient, session: RobotsSession, progress: _Progress) -> bool:
+        """Bring a session into the archive; return False where it cannot be read.
+
+        Raise RobotAnswerError, FileWriteError, OSError, StoreError, PullStoppedError.
+        """
+        export = await self._export(client, session)
+        await asyncio.to_thread(make_folder, self._folder)
+        path = self._folder / f"{session.identifier}-{export.sha256}{PART}"
+        for other in self._folder.glob(f"{session.identifier}-*"):
+            if other != path:
+                other.unlink()
+        require_free(self._folder, COPIES * export.bytes)
+        await asyncio.to_thread(client.download, export, path)
+        if await asyncio.to_thread(sum_file, path) != export.sha256:
+            path.unlink()
+            raise RobotAnswerError(
+                f"The archive of “{session.name}” was damaged on its way. It is fetched again."
+            )
+        try:
+            await self._intake.take_merged(path)
+        except InvalidError as problem:
+            progress.problems[session.identifier] = f"“{session.name}”: {problem}"
+            return False
+        except RefusedError as problem:
+            # It came in another way meanwhile, or goes just now: the next look sees.
+            log.info("%s: %s", session.name, problem)
+            return False
+        finally:
+            if session.identifier not in progress.problems:
+                path.unlink(missing_ok=True)
+        await asyncio.to_thread(client.remove_export, export)
+        return True
+
+    async def _export(self, client: RobotClient, session: RobotsSession) -> RobotsExport:
+        export = await asyncio.to_thread(client.find_export, session.identifier)
+        if export is None:
+            export = await asyncio.to_thread(client.begin_export, session.id)
+        while export.state in ("waiting", "running"):
+            await asyncio.sleep(EXPORT_PAUSE)
+            export = await asyncio.to_thread(client.export, export.id)
+        if export.state == "failed":
+            raise RobotAnswerError(f"It cannot make an archive of “{session.name}”: {export.problem}")
+        return export
+
+    async def _report(self, client: RobotClient, sessions: Sequence[RobotsSession]) -> None:
+        for some in _parts([session.identifier for session in sessions], ARCHIVED_MAX):
+            await asyncio.to_thread(client.note_archived, some)
+
+
+def _note(connection: Connection, session: RobotsSession, robot: str) -> None:
+    values = {"identifier": session.identifier, "robot": robot, "pulled": time()}
+    connection.execute(insert(PulledSessionRow).values(values))
+
+
+def _parts(items: Sequence[str], size: int) -> Iterable[Sequence[str]]:
+    return (items[at : at + size] for at in range(0, len(items), size))
+
+
+def _describe(row: LabRobotRow, progress: _Progress) -> LabRobot:
+    return LabRobot(
+        id=row.id or 0,
+        name=row.name,
+        url=row.url,
+        added=datetime.fromtimestamp(row.added, UTC),
+        phase=progress.phase,
+        text=progress.text,
+        lacking=progress.lacking,
+        problems=[*progress.problems.values()][:PROBLEMS_SHOWN],
+        seen=None if progress.seen is None else datetime.fromtimestamp(progress.seen, UTC),
+    )

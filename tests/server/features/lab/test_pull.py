@@ -1,0 +1,267 @@
+"""The pull of sessions from robots into a lab's archive: whole, once, and only while they are disarmed."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import httpx
+import pytest
+from sqlmodel import col, select
+
+from server.features.exports.archive_reader import ArchiveError
+from server.features.exports.imports import Imports
+from server.features.lab import pull as pull_module
+from server.features.lab import robot_client
+from server.features.lab.pull import SessionPull
+from server.health.monitor import HealthMonitor
+from server.library.bookmarks import Bookmarks
+from server.library.catalogue import Catalogue
+from server.library.content import Recording
+from server.platform.database_copies import sum_file
+from server.platform.disk_space import FileWriteError
+from server.platform.models import Chunk
+from server.platform.settings import DataFolder, Settings, make_folders
+from server.platform.store import Store
+from tests.server.blocks import depth_block, film_block, state_block
+from tests.server.features.exports.recordings import record_batches
+from tests.server.features.lab.labs import ServedLab, serve_lab
+from tests.server.postgres import new_archive
+from tests.server.serving import Served, serve
+from tests.server.waiting import SECONDS, until
+
+
+class PulledRobot(Served):
+    """A running robot whose runtime says every half second whether it is armed."""
+
+    armed = False
+
+    async def say_state(self) -> None:
+        """Say it for ever."""
+        number = 0
+        while True:
+            number += 1
+            now = self.container.clock.now()
+            self.runtime.publish(state_block(number, time=now, armed=self.armed))
+            await asyncio.sleep(0.5)
+
+
+@pytest.fixture
+async def robot(settings: Settings) -> AsyncIterator[PulledRobot]:
+    """A disarmed robot with a recorded session of two minutes, with a film."""
+    async with serve(settings) as served:
+        robot = PulledRobot(**vars(served))
+        saying = asyncio.create_task(robot.say_state())
+        await tell(robot, armed=False)
+        await record(robot, "first")
+        yield robot
+        saying.cancel()
+
+
+@asynccontextmanager
+async def lab_of(settings: Settings, archive: str = "") -> AsyncIterator[ServedLab]:
+    """A lab with a folder of its own."""
+    with TemporaryDirectory(prefix="mucat-lab-") as name:
+        folder = DataFolder(Path(name))
+        make_folders(folder)
+        async with serve_lab(replace(settings, data=folder), archive) as lab:
+            yield lab
+
+
+async def tell(robot: PulledRobot, *, armed: bool) -> None:
+    """Arm or disarm the robot, and wait until its server knows."""
+    monitor, robot.armed = robot.get(HealthMonitor), armed
+    await until(lambda: (monitor.state() or {}).get("armed") is armed, "the state")
+
+
+async def record(served: Served, name: str) -> int:
+    """Record a session of two minutes in twelve chunks, with a film, a bookmark and a tag."""
+    batches = [[depth_block(500 * part, 500)] for part in range(12)]
+    film = [film_block(number, 101.0 + number, b"picture") for number in range(3)]
+    session = await record_batches(served.get(Store), served.settings, *batches, film, name=name)
+    await served.get(Bookmarks).add(session, 0.0, "turned")
+    await served.get(Catalogue).change(session, tags=["pool"])
+    return session
+
+
+async def introduce(lab: ServedLab, robot: PulledRobot, token: str = "") -> None:
+    """Have the lab pull from a robot."""
+    made = await robot.api.post(
+        "/access/tokens", json={"name": f"lab {id(lab)}", "scope": "operate", "days": 30}
+    )
+    url = f"http://127.0.0.1:{robot.settings.server.port}"
+    body = {"name": "turtle", "url": url, "token": token or made.json()["token"]}
+    (await lab.api.post("/lab/robots", json=body)).raise_for_status()
+
+
+async def see(lab: ServedLab, phase: str) -> dict[str, Any]:
+    """Wait until the pull from the one robot is in a phase; return its description."""
+    pull = lab.get(SessionPull)
+    await until(lambda: [robot.phase for robot in pull.listed()] == [phase], f"the phase {phase}")
+    (robot,) = (await lab.api.get("/lab/robots")).json()
+    assert isinstance(robot, dict)
+    return robot
+
+
+def rows_of(store: Store, session: int) -> bytes:
+    return b"".join(Recording.open(store, session).rows("depth"))
+
+
+@pytest.mark.parametrize("database", ["sqlite", "postgresql"])
+async def test_a_session_comes_whole_and_the_robot_is_told(robot: PulledRobot, database: str) -> None:
+    async with lab_of(robot.settings, new_archive() if database == "postgresql" else "") as lab:
+        await introduce(lab, robot)
+        await see(lab, "done")
+        (there,) = (await robot.api.get("/sessions")).json()
+        (here,) = (await lab.api.get("/sessions?robot=tested&tag=pool&search=FIRST")).json()
+        same = ("identifier", "name", "note", "tags", "markers", "origin", "samples", "robot", "film")
+        assert {name: here[name] for name in same} == {name: there[name] for name in same}
+        assert there["archived"] is not None
+        assert (await lab.api.get("/sessions/robots")).json() == ["tested"]
+        assert rows_of(lab.get(Store), here["id"]) == rows_of(robot.get(Store), there["id"])
+        film = (await lab.api.get(f"/sessions/{here['id']}/film")).json()
+        assert film == (await robot.api.get(f"/sessions/{there['id']}/film")).json()
+        # Two minutes in two chunks instead of twelve, and the film's as it was.
+        with lab.get(Store).read() as store:
+            chunks = store.exec(select(Chunk.count).where(col(Chunk.topic) == "depth")).all()
+        assert sum(chunks) == 6000
+        assert len(chunks) == 2
+        assert (await robot.api.get("/exports")).json() == []
+
+
+async def test_nothing_comes_twice_not_even_what_was_purged(robot: PulledRobot) -> None:
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        await see(lab, "done")
+        (here,) = (await lab.api.get("/sessions")).json()
+        await lab.api.delete(f"/sessions/{here['id']}")
+        await lab.api.post(f"/sessions/{here['id']}/purge")
+        await record(robot, "second")
+        lab.get(SessionPull).wake()
+        listing = lab.get(Catalogue)
+        await until(
+            lambda: [session.name for session in listing.page().sessions] == ["second"], "the second session"
+        )
+        await see(lab, "done")
+
+
+async def test_an_armed_robot_is_left_alone(robot: PulledRobot) -> None:
+    await tell(robot, armed=True)
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        assert (await see(lab, "armed"))["lacking"] == 1
+        assert (await robot.api.get("/exports")).json() == []
+        await tell(robot, armed=False)
+        lab.get(SessionPull).wake()
+        await see(lab, "done")
+
+
+async def test_a_download_goes_on_where_it_broke_off(
+    robot: PulledRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    received: list[int] = []
+
+    def break_off(answer: Any) -> bytes:
+        if received and not healed:
+            raise robot_client.RobotAnswerError("The connection broke.")
+        piece = answer.read(1000)
+        received.append(len(piece))
+        return bytes(piece)
+
+    healed = False
+    monkeypatch.setattr(robot_client, "_receive", break_off)
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        assert "broke" in (await see(lab, "unreachable"))["text"]
+        (export,) = (await robot.api.get("/exports")).json()
+        (part,) = lab.container.settings.data.pulls.iterdir()
+        assert 0 < part.stat().st_size < export["bytes"]
+        healed = True
+        lab.get(SessionPull).wake()
+        await see(lab, "done")
+        assert sum(received) == export["bytes"]
+        assert [*lab.container.settings.data.pulls.iterdir()] == []
+
+
+async def test_a_damaged_download_is_fetched_again(
+    robot: PulledRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pull_module, "sum_file", lambda path: sum_file(path)[::-1])
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        assert "damaged on its way" in (await see(lab, "unreachable"))["text"]
+        monkeypatch.undo()
+        lab.get(SessionPull).wake()
+        await see(lab, "done")
+
+
+async def test_what_cannot_be_read_is_said_and_hinders_no_other(
+    robot: PulledRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    take = Imports.take_merged
+    refused: list[Path] = []
+
+    async def take_but_the_first(self: Imports, path: Path) -> int:
+        if not refused:
+            refused.append(path)
+            raise ArchiveError("It has format 2; this version of µ-CAT reads format 1.")
+        return await take(self, path)
+
+    await record(robot, "second")
+    monkeypatch.setattr(Imports, "take_merged", take_but_the_first)
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        seen = await see(lab, "failed")
+        assert (seen["lacking"], "format 2" in seen["problems"][0]) == (1, True)
+        assert [session["name"] for session in (await lab.api.get("/sessions")).json()] == ["first"]
+        archived = {
+            session["name"]: session["archived"] for session in (await robot.api.get("/sessions")).json()
+        }
+        assert (archived["first"] is not None, archived["second"]) == (True, None)
+
+
+async def test_a_full_disk_a_wrong_token_and_a_robot_that_is_away_are_said(
+    robot: PulledRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise FileWriteError("The disk that holds the archive has 1 MB free.")
+
+    monkeypatch.setattr(pull_module, "require_free", refuse)
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        assert "1 MB free" in (await see(lab, "failed"))["text"]
+        monkeypatch.undo()
+        (known,) = (await lab.api.get("/lab/robots")).json()
+        await lab.api.delete(f"/lab/robots/{known['id']}")
+        await introduce(lab, robot, token="mucat_wrong")
+        assert "sign" in (await see(lab, "failed"))["text"]
+        again = await lab.api.post("/lab/robots", json={"name": "turtle", "url": "http://x", "token": "t"})
+        assert (again.status_code, "already" in again.json()["detail"]) == (409, True)
+        (known,) = (await lab.api.get("/lab/robots")).json()
+        await lab.api.delete(f"/lab/robots/{known['id']}")
+        body = {"name": "away", "url": "http://127.0.0.1:1", "token": "t"}
+        await lab.api.post("/lab/robots", json=body)
+        assert "does not answer" in (await see(lab, "unreachable"))["text"]
+
+
+async def test_two_labs_pull_from_one_robot(robot: PulledRobot) -> None:
+    async with lab_of(robot.settings) as first, lab_of(robot.settings) as second:
+        for lab in (first, second):
+            await introduce(lab, robot)
+        for lab in (first, second):
+            async with asyncio.timeout(SECONDS):
+                while len((await lab.api.get("/sessions")).json()) < 1:
+                    lab.get(SessionPull).wake()
+                    await asyncio.sleep(0.05)
+
+
+async def test_a_token_that_only_reads_cannot_say_that_sessions_are_archived(robot: PulledRobot) -> None:
+    asked = {"name": "reader", "scope": "read", "days": 30}
+    made = await robot.api.post("/access/tokens", json=asked)
+    headers = {"authorization": f"Bearer {made.json()['token']}"}
+    async with httpx.AsyncClient(base_url=robot.api.base_url, headers=headers) as reader:
+        answer = await reader.post("/sessions/archived", json={"identifiers": ["0" * 32]})
+    assert answer.status_code == 403
