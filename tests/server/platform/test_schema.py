@@ -249,6 +249,8 @@ def test_a_session_s_contents_are_read_from_an_index_alone(store: Store) -> None
 
 INNER = {
     "pulled_session",
+    "run_figures",
+    "sweep_run",
     "session_figures",
     "chunk",
     "gap",
