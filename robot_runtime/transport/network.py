@@ -21,7 +21,7 @@ LOCAL_ONLY: Mapping[str, Any] = {"transport/link/protocols": ["unixsock-stream"]
 _SENDS = ("sense", "simulator/stream", TRUTH.name, CRAFT.name, OBSERVER.name)
 _RECEIVES = (MOTOR.name, TRUTH.name)
 _ANSWERS = ("simulator/**", "scene/**")
-_EVERY_MESSAGE = (
+EVERY_MESSAGE = (
     "put",
     "delete",
     "declare_subscriber",
@@ -34,9 +34,9 @@ _EVERY_MESSAGE = (
 )
 
 
-def simulators(folder: Path) -> list[str]:
-    """Return the names of the simulators' certificates that are in force."""
-    return sorted(path.stem for path in (folder / SIMULATORS).glob("*.pem"))
+def names_in_force(folder: Path, holders: str = SIMULATORS) -> list[str]:
+    """Return the common names of these holders' certificates in force: simulators, or a lab's robots."""
+    return sorted(path.stem for path in (folder / holders).glob("*.pem"))
 
 
 def listen_settings(folder: Path, robot: str) -> Mapping[str, Any]:
@@ -44,11 +44,11 @@ def listen_settings(folder: Path, robot: str) -> Mapping[str, Any]:
 
     Raise ConfigError where it is not there.
     """
-    tls = _tls(folder, "listen", "mucat run makes them when zenoh.listen is set in robot.toml.")
+    tls = tls_settings(folder, "listen", "mucat run makes them when zenoh.listen is set in robot.toml.")
     return {
         "transport/link/protocols": ["unixsock-stream", "tls"],
         "transport/link/tls": tls,
-        "access_control": _access(robot, simulators(folder)),
+        "access_control": _access(robot, names_in_force(folder)),
     }
 
 
@@ -57,13 +57,15 @@ def connect_settings(folder: Path) -> Mapping[str, Any]:
 
     Raise ConfigError where it is not there.
     """
-    tls = _tls(folder, "connect", "Copy the folder here that mucat certificate issue has made on the robot.")
+    tls = tls_settings(
+        folder, "connect", "Copy the folder here that mucat certificate issue has made on the robot."
+    )
     # Addresses of robots change. Of this authority's certificates only the robot's own is a server's.
     tls["verify_name_on_connect"] = False
     return {"transport/link/protocols": ["tls"], "transport/link/tls": tls}
 
 
-def _tls(folder: Path, end: Literal["listen", "connect"], remedy: str) -> dict[str, str | bool]:
+def tls_settings(folder: Path, end: Literal["listen", "connect"], remedy: str) -> dict[str, str | bool]:
     """Return Zenoh's TLS settings at this end, with the certificate in `folder`. Raise ConfigError."""
     files = {name: folder / name for name in (AUTHORITY, CERTIFICATE, KEY)}
     missing = [name for name, path in files.items() if not path.is_file()]
@@ -81,12 +83,12 @@ def _access(robot: str, names: list[str]) -> dict[str, Any]:
     """Return Zenoh's access control: all keys here, a simulator's own for these names, else none."""
     both = ("ingress", "egress")
     rules = [
-        _rule("here", both, _EVERY_MESSAGE, ["**"]),
-        _rule("sends", ("ingress",), ("put",), _keys(robot, _SENDS)),
-        _rule("learns who listens", ("egress",), ("declare_subscriber",), _keys(robot, _SENDS)),
-        _rule("listens", ("ingress",), ("declare_subscriber",), _keys(robot, _RECEIVES)),
-        _rule("receives", ("egress",), ("put",), _keys(robot, _RECEIVES)),
-        _rule("answers", both, ("query", "declare_queryable", "reply"), _keys(robot, _ANSWERS)),
+        allow("here", both, EVERY_MESSAGE, ["**"]),
+        allow("sends", ("ingress",), ("put",), _keys(robot, _SENDS)),
+        allow("learns who listens", ("egress",), ("declare_subscriber",), _keys(robot, _SENDS)),
+        allow("listens", ("ingress",), ("declare_subscriber",), _keys(robot, _RECEIVES)),
+        allow("receives", ("egress",), ("put",), _keys(robot, _RECEIVES)),
+        allow("answers", both, ("query", "declare_queryable", "reply"), _keys(robot, _ANSWERS)),
     ]
     subjects: list[dict[str, Any]] = [{"id": "here", "link_protocols": ["unixsock-stream"]}]
     policies: list[dict[str, Any]] = [{"rules": ["here"], "subjects": ["here"]}]
@@ -94,6 +96,13 @@ def _access(robot: str, names: list[str]) -> dict[str, Any]:
         # Without names the subject would be everybody.
         subjects.append({"id": "simulators", "link_protocols": ["tls"], "cert_common_names": names})
         policies.append({"rules": [rule["id"] for rule in rules[1:]], "subjects": ["simulators"]})
+    return access_control(rules, subjects, policies)
+
+
+def access_control(
+    rules: list[dict[str, Any]], subjects: list[dict[str, Any]], policies: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """Return Zenoh's access control that allows what the rules do, and nothing else."""
     return {
         "enabled": True,
         "default_permission": "deny",
@@ -103,7 +112,8 @@ def _access(robot: str, names: list[str]) -> dict[str, Any]:
     }
 
 
-def _rule(name: str, flows: Iterable[str], messages: Iterable[str], keys: Iterable[str]) -> dict[str, Any]:
+def allow(name: str, flows: Iterable[str], messages: Iterable[str], keys: Iterable[str]) -> dict[str, Any]:
+    """Return a rule of Zenoh's access control that allows these messages of these keys."""
     return {
         "id": name,
         "permission": "allow",

@@ -12,7 +12,7 @@ import secrets
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 import zenoh
 
@@ -74,14 +74,8 @@ class ZenohTransport:
         """The endpoints that it listens on."""
         self.robot = robot
         self._prefix = f"mucat/{robot}/"
-        # Zenoh reads it once, when a process opens its first session.
-        os.environ.setdefault("ZENOH_RUNTIME", _THREADS)
-        try:
-            self._session = zenoh.open(_configuration(listen, connect, scouting, client, network))
-        except zenoh.ZError as problem:
-            does = "reach" if client else "listen on"
-            where = ", ".join(connect if client else listen)
-            raise OSError(f"cannot {does} {where}: {describe_problem(problem)}") from problem
+        self._session = open_session("client" if client else "peer", listen, connect, network, scouting)
+        self._tokens: list[zenoh.LivelinessToken] = []
         self._publishers: dict[str, zenoh.Publisher] = {}
         self._watched: dict[str, bool] = {}
         """Of the names that were asked for: if anybody subscribes to them now."""
@@ -155,6 +149,15 @@ class ZenohTransport:
 
         self._queryables.append(self._session.declare_queryable(self._prefix + name, reply))
 
+    def announce(self, name: str) -> None:
+        """Declare a liveliness token of this name: who watches for it learns of the end of this process."""
+        self._tokens.append(self._session.liveliness().declare_token(self._prefix + name))
+
+    @property
+    def routed(self) -> bool:
+        """True while a router is connected."""
+        return bool(self._session.info.routers_zid())
+
     def close(self) -> None:
         """Close the session. An open Zenoh session keeps the interpreter alive, so this must be called."""
         self._session.close()  # type: ignore[no-untyped-call]
@@ -173,6 +176,26 @@ class ZenohTransport:
         if publisher is None:
             publisher = self._publishers[name] = self._session.declare_publisher(self._prefix + name)
         return publisher
+
+
+Mode = Literal["peer", "client", "router"]
+
+
+def open_session(
+    mode: Mode,
+    listen: Sequence[str] = (),
+    connect: Sequence[str] = (),
+    network: Mapping[str, Any] = LOCAL_ONLY,
+    scouting: bool = False,
+) -> "zenoh.Session":
+    """Open a session of Zenoh. Raise OSError as `ZenohTransport` does."""
+    # Zenoh reads it once, when a process opens its first session.
+    os.environ.setdefault("ZENOH_RUNTIME", _THREADS)
+    try:
+        return zenoh.open(_configuration(mode, listen, connect, network, scouting))
+    except zenoh.ZError as problem:
+        does, where = ("reach", connect) if mode == "client" else ("listen on", listen)
+        raise OSError(f"cannot {does} {', '.join(where)}: {describe_problem(problem)}") from problem
 
 
 def join(robot: str, endpoints: Sequence[str], network: Mapping[str, Any] = LOCAL_ONLY) -> ZenohTransport:
@@ -220,15 +243,12 @@ def _reason(name: str, problem: Exception) -> str:
 
 
 def _configuration(
-    listen: Sequence[str],
-    connect: Sequence[str],
-    scouting: bool,
-    client: bool,
-    network: Mapping[str, Any],
+    mode: Mode, listen: Sequence[str], connect: Sequence[str], network: Mapping[str, Any], scouting: bool
 ) -> zenoh.Config:
+    client = mode == "client"
     settings: dict[str, Any] = {
         **network,
-        "mode": "client" if client else "peer",
+        "mode": mode,
         "scouting/multicast/enabled": scouting,
         # It answers others that look for it. It connects to nobody because of a message from the network.
         "scouting/multicast/autoconnect": {"router": [], "peer": [], "client": []},

@@ -8,7 +8,6 @@ from typing import Any, Literal
 from pydantic import Field
 
 from robot_runtime.clock import Clock
-from robot_runtime.contract.link_statistics import LinkStatistics
 from robot_runtime.contract.topics import LINK, MISSION, STATE, TIME, TRUTH, AnyTopic
 from robot_runtime.errors import RefusedError
 from robot_runtime.simulation.scene.availability import missing
@@ -128,6 +127,12 @@ class HealthMonitor:
                 return
             await asyncio.sleep(CATCH_UP_PAUSE)
 
+    def record(self, topic: AnyTopic, seconds: float) -> Any:
+        """Return the newest record of a topic of rows; None where it is older than so many seconds."""
+        if topic not in self._newest or not self._fresh(topic, seconds, None):
+            return None
+        return _last_record(self._newest[topic][1])
+
     def _document(self, topic: AnyTopic) -> dict[str, Any] | None:
         if topic not in self._newest:
             return None
@@ -180,8 +185,7 @@ class HealthMonitor:
         return Health(status=status, version=VERSION, robot=self._settings.robot.name, parts=parts)
 
     def _see_link(self, block: Block, now: float) -> None:
-        row = block.data[len(block.data) - block.topic.row_bytes + TIME.size :]
-        received = LinkStatistics.from_bytes(row).bytes_received
+        received = _last_record(block).bytes_received
         # A smaller number counts from 0 again, since the line was opened anew.
         if received > self._bytes_received >= 0 or 0 < received < self._bytes_received:
             self._bytes_grew = now
@@ -288,3 +292,8 @@ class HealthMonitor:
         if (process is None or process.state == "running") and self._clock.now() - since < GRACE_SECONDS:
             return "starting", text or "Starting."
         return "failed", text or "It sends nothing."
+
+
+def _last_record(block: Block) -> Any:
+    row = block.data[len(block.data) - block.topic.row_bytes + TIME.size :]
+    return block.topic.record.from_bytes(row)

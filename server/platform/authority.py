@@ -1,4 +1,4 @@
-"""The robot's own authority for Zenoh on the network: its certificate, and those of the simulators."""
+"""The authority for Zenoh on the network, of a robot or a lab: its certificate, and those that it issues."""
 
 import re
 import secrets
@@ -33,12 +33,14 @@ class IssuedCertificate(NamedTuple):
 class Authority:
     """The certificates in the data folder. All methods raise SetupError on failure.
 
-    A certificate's common name is its file's name in `simulators`. It holds random digits, so that a name
-    that is issued again after it was revoked does not revive the old certificate.
+    `holders` names the folder of those in force: a robot's simulators, or a lab's robots. A certificate's
+    common name is its file's name there. It holds random digits, so that a name that is issued again after
+    it was revoked does not revive the old certificate.
     """
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, holders: str = SIMULATORS) -> None:
         self._folder = settings.data.zenoh
+        self._holders = holders
         self._robot = settings.robot.name
         self._signer = Signer(self._folder / AUTHORITY, self._folder / AUTHORITY_KEY)
 
@@ -51,7 +53,7 @@ class Authority:
             shutil.rmtree(part, ignore_errors=True)
             make_folder(part.parent)
             part.mkdir(mode=0o700)
-            (part / SIMULATORS).mkdir(mode=0o700)
+            (part / self._holders).mkdir(mode=0o700)
             signer = Signer(part / AUTHORITY, part / AUTHORITY_KEY)
             make_certificate(signer.certificate, signer.key, f"{self._robot} authority", SIGNS)
             own = (f"subjectAltName=DNS:{self._robot}", "extendedKeyUsage=serverAuth", *LEAF)
@@ -61,14 +63,15 @@ class Authority:
             raise SetupError(f"The certificates in {self._folder} cannot be made: {problem}.") from problem
 
     def issue(self, name: str, destination: Path) -> None:
-        """Make a simulator's certificate, with its key, in a new folder."""
+        """Make a holder's certificate, with its key, in a new folder."""
         check_name(name)
         if any(certificate.name == name for certificate in self.issued()):
             raise SetupError(f"{name} has a certificate. Revoke it first: mucat certificate revoke {name}")
         common_name = f"{name}.{secrets.token_hex(4)}"
         made = self._make(common_name, destination, f"subjectAltName=DNS:{name}")
         try:
-            write_whole(self._folder / SIMULATORS / f"{common_name}.pem", made.read_bytes(), 0o600)
+            make_folder(self._folder / self._holders)
+            write_whole(self._folder / self._holders / f"{common_name}.pem", made.read_bytes(), 0o600)
         except OSError as problem:
             raise SetupError(f"The certificate {name} cannot be put into force: {problem}.") from problem
 
@@ -92,7 +95,7 @@ class Authority:
         return made
 
     def revoke(self, name: str) -> None:
-        """Take a simulator's certificate out of force."""
+        """Take a holder's certificate out of force."""
         certificates = [certificate for certificate in self.issued() if certificate.name == name]
         if not certificates:
             raise SetupError(
@@ -106,8 +109,8 @@ class Authority:
             raise SetupError(f"The certificate {name} cannot be revoked: {problem}.") from problem
 
     def issued(self) -> list[IssuedCertificate]:
-        """Return the simulators' certificates in force, by name."""
-        files = sorted((self._folder / SIMULATORS).glob("*.pem"))
+        """Return the holders' certificates in force, by name."""
+        files = sorted((self._folder / self._holders).glob("*.pem"))
         return [
             IssuedCertificate(
                 file.stem.partition(".")[0], datetime.fromtimestamp(file.stat().st_mtime, UTC), file

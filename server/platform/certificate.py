@@ -64,6 +64,17 @@ def prepare_certificate(settings: Settings) -> Certificate:
         ) from problem
 
 
+def read_fingerprint(folder: DataFolder) -> str:
+    """Return the fingerprint of this folder's certificate. Raise OSError where there is none."""
+    return _read(folder.tls).fingerprint
+
+
+def fingerprint_of(certificate: bytes) -> str:
+    """Return the fingerprint of a certificate in DER."""
+    digest = sha256(certificate).hexdigest().upper()
+    return ":".join(digest[index : index + 2] for index in range(0, len(digest), 2))
+
+
 def trust_only(folder: DataFolder) -> ssl.SSLContext:
     """Return the TLS context for requests to this folder's server: it trusts only that certificate.
 
@@ -118,10 +129,9 @@ def _renew(folder: Path, settings: Settings) -> bool:
 def _read(folder: Path) -> Certificate:
     text = (folder / CERTIFICATE).read_text(encoding="ascii")
     own = text.partition(ssl.PEM_FOOTER)[0] + ssl.PEM_FOOTER
-    digest = sha256(ssl.PEM_cert_to_DER_cert(own)).hexdigest().upper()
     (folder / KEY).read_bytes()
-    pairs = (digest[index : index + 2] for index in range(0, len(digest), 2))
-    return Certificate(folder / CERTIFICATE, folder / KEY, ":".join(pairs))
+    fingerprint = fingerprint_of(ssl.PEM_cert_to_DER_cert(own))
+    return Certificate(folder / CERTIFICATE, folder / KEY, fingerprint)
 
 
 def _alternative(name: str) -> str:
