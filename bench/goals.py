@@ -179,6 +179,9 @@ GOALS = {
     "replay.seek_ms_p95": _most(150, "python"),
     **_goodput("link.goodput"),
     **_goodput("link.goodput_chip"),
+    "router.cpu_percent": _most(2, "python"),
+    "router.presences_heard": _least(0.99),
+    "router.stop_ms_max": _most(500),
     "scenario.speed_x": _least(15, "python"),
     "scenario.speed_board_x": _least(6, "python"),
     # Missed since they were set: both services together take some 3.5 s of a processor here until page and

@@ -59,6 +59,7 @@ PARTS = {
         BenchPart("stack"),
         BenchPart("quota", is_long=True, prefix="quota."),
         BenchPart("decoder", is_long=True, prefix="decoder."),
+        BenchPart("router"),
         BenchPart("hub"),
         BenchPart("doors"),
         BenchPart("flight", draws=True),

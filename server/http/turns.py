@@ -21,8 +21,9 @@ REQUESTS_AT_ONCE = 6
 """Of one viewer's device; a browser has as many."""
 STOPS_AT_ONCE = 2
 """Besides, so that other requests keep no STOP waiting."""
-STOP_PATH = "/api/robot/stop"
-OPERATING = ("/api/robot", "/api/control", "/api/alive", "/api/health", "/api/access/me")
+STOP_PATHS = ("/api/robot/stop", "/api/robots/stop")
+"""STOP of a robot, and of all robots of a lab."""
+OPERATING = ("/api/robot", "/api/robots", "/api/control", "/api/alive", "/api/health", "/api/access/me")
 """Paths, and beginnings of paths, that are served where memory is short, as the page's own files are."""
 
 
@@ -43,7 +44,7 @@ class RequestTurns:
         if _can_wait(scope, caller) and find_service(HTTPConnection(scope), MemoryReserve).short:
             await refuse(scope, receive, send, 503, SHORT)
         elif scope["type"] == "http" and caller.role != "operator":
-            at_once = STOPS_AT_ONCE if scope["path"] == STOP_PATH else REQUESTS_AT_ONCE
+            at_once = STOPS_AT_ONCE if scope["path"] in STOP_PATHS else REQUESTS_AT_ONCE
             async with self._turn(caller.device, at_once):
                 await self._app(scope, receive, send)
         else:

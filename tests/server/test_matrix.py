@@ -79,6 +79,14 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("POST", "/api/doctor"): "operator",
     ("GET", "/api/robot"): "viewer",
     ("POST", "/api/robot/stop"): "viewer",
+    ("GET", "/api/lab"): "viewer",
+    ("POST", "/api/lab/join"): "administer",
+    ("DELETE", "/api/lab"): "administer",
+    ("GET", "/api/robots"): "viewer",
+    ("POST", "/api/robots/codes"): "administer",
+    ("POST", "/api/robots/join"): "anyone",
+    ("POST", "/api/robots/stop"): "viewer",
+    ("DELETE", "/api/robots/{robot}"): "administer",
     ("GET", "/api/firmware"): "viewer",
     ("POST", "/api/firmware"): "administer",
     ("GET", "/api/bring-up"): "viewer",
@@ -264,7 +272,7 @@ SAFE = {"GET", "HEAD", "OPTIONS"}
 ABSENT = dict.fromkeys(
     ("session", "run", "sweep", "device", "layout", "profile", "panel", "mark", "name", "link"), "999"
 )
-ABSENT |= {"export": "0" * 16, "path": "index.html"}
+ABSENT |= {"export": "0" * 16, "path": "index.html", "robot": "nobody"}
 QUERIES = {"/api/control/take": "over=true"}
 """Without it, who is admitted would be refused as long as somebody else has control."""
 NEAR, FAR = "127.0.0.1", "192.0.2.7"

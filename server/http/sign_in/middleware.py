@@ -18,6 +18,7 @@ OPEN = frozenset(
         ("GET", "/api/access/me"),
         ("POST", "/api/access/pair"),
         ("POST", "/api/access/read"),
+        ("POST", "/api/robots/join"),
     }
 )
 """The operations that need no sign-in."""

@@ -32,6 +32,7 @@ from server.features.missions.past_runs import RUNS_MAX
 from server.features.missions.schemas import SEEDS_MAX
 from server.features.panels.scripts import PANELS_SHOWN
 from server.features.people.audit import LISTED_MOST as ENTRIES_LISTED
+from server.features.roster.roster import DEPTHS
 from server.features.scenarios.library import SCENARIOS_MAX
 from server.features.scenarios.runs import QUEUE_MAX
 from server.features.sweeps.library import RUNS_LISTED_MAX
@@ -45,6 +46,7 @@ from server.library.listing import COLUMNS_SHOWN, GROUPS_MAX, PAGE_MAX, TAGS_SHO
 from server.library.missions import MISSIONS_SHOWN
 from server.library.schemas import SHOWN_MAX
 from server.library.snapshots import SNAPSHOTS_SHOWN
+from server.platform.paired_robots import ROBOTS_MAX
 from server.platform.settings import Settings
 from server.recording.schemas import CURVE_POINTS
 
@@ -71,6 +73,8 @@ LIMITS = {
     "/api/parameters/changes values": PARAMETERS_MAX,
     "/api/profiles": PROFILES_MAX,
     "/api/profiles values": PARAMETERS_MAX,
+    "/api/robots robots": ROBOTS_MAX,
+    "/api/robots robots depths": DEPTHS,
     "/api/scenarios": SCENARIOS_MAX,
     "/api/scenarios summary events": SCENARIO_EVENTS_MAX,
     "/api/scenarios/state active events": SCENARIO_EVENTS_MAX,

@@ -9,7 +9,7 @@ import pytest
 from starlette.types import Message, Receive, Scope, Send
 
 from server.http.sign_in.identity import IDENTITY, SHELL, Identity
-from server.http.turns import REQUESTS_AT_ONCE, STOP_PATH, STOPS_AT_ONCE, RequestTurns
+from server.http.turns import REQUESTS_AT_ONCE, STOP_PATHS, STOPS_AT_ONCE, RequestTurns
 from server.platform.memory_reserve import MemoryReserve
 
 VIEWER = Identity(7, "Viewer", "viewer", "program")
@@ -53,23 +53,23 @@ async def turn_over() -> None:
 async def test_a_viewer_s_device_has_a_few_requests_under_way_and_its_stops_besides() -> None:
     crowd = Crowd()
     asked = [crowd.ask(VIEWER, "/api/past") for _ in range(100)]
-    asked += [crowd.ask(VIEWER, STOP_PATH) for _ in range(100)]
-    asked += [crowd.ask(OTHER, STOP_PATH), crowd.ask(SHELL, STOP_PATH)]
+    asked += [crowd.ask(VIEWER, STOP_PATHS[0]) for _ in range(100)]
+    asked += [crowd.ask(OTHER, STOP_PATHS[0]), crowd.ask(SHELL, STOP_PATHS[0])]
     asked += [crowd.ask(SHELL, "/api/past") for _ in range(50)]
     await turn_over()
     assert crowd.begun == {
         (VIEWER.device, "/api/past"): REQUESTS_AT_ONCE,
-        (VIEWER.device, STOP_PATH): STOPS_AT_ONCE,
-        (OTHER.device, STOP_PATH): 1,
-        (SHELL.device, STOP_PATH): 1,
+        (VIEWER.device, STOP_PATHS[0]): STOPS_AT_ONCE,
+        (OTHER.device, STOP_PATHS[0]): 1,
+        (SHELL.device, STOP_PATHS[0]): 1,
         (SHELL.device, "/api/past"): 50,
     }
     crowd.may_end.set()
     await asyncio.gather(*asked)
-    assert crowd.begun[VIEWER.device, "/api/past"] == crowd.begun[VIEWER.device, STOP_PATH] == 100
+    assert crowd.begun[VIEWER.device, "/api/past"] == crowd.begun[VIEWER.device, STOP_PATHS[0]] == 100
 
 
-@pytest.mark.parametrize("path", [STOP_PATH, "/api/robot/commands/arm", "/api/control/take", "/api/alive"])
+@pytest.mark.parametrize("path", [*STOP_PATHS, "/api/robot/commands/arm", "/api/control/take", "/api/alive"])
 @pytest.mark.parametrize("caller", [VIEWER, SHELL])
 async def test_where_memory_is_short_the_robot_is_operated(caller: Identity, path: str) -> None:
     crowd = Crowd(short=True)
