@@ -72,6 +72,8 @@ const TIMEOUT_CHECK = 15_000;
 const TIMEOUT_BOARD = 120_000;
 /** ms; the robot is armed first */
 const TIMEOUT_MISSION = 30_000;
+/** ms; the lab makes a certificate meanwhile */
+const TIMEOUT_JOIN = 30_000;
 /** ms; hours of recordings are read */
 const TIMEOUT_COMPARE = 60_000;
 
@@ -110,6 +112,14 @@ export const api = {
   audit: (query: AuditQuery) => ask(server.GET('/api/audit', { params: { query } })),
   auditFile: (query: AuditQuery) =>
     download(server.GET('/api/audit/csv', { params: { query: { ...query, spreadsheet: ownSpreadsheet() } }, parseAs: 'stream', fetch: within(null) })),
+
+  labRobots: () => ask(server.GET('/api/robots')),
+  makeJoiningCode: () => ask(server.POST('/api/robots/codes')),
+  stopAll: () => ask(server.POST('/api/robots/stop')),
+  removeRobot: (robot: string) => command(server.DELETE('/api/robots/{robot}', { params: { path: { robot } } })),
+  lab: () => ask(server.GET('/api/lab')),
+  joinLab: (address: string, code: string) => ask(server.POST('/api/lab/join', { body: { address, code }, fetch: within(TIMEOUT_JOIN) })),
+  leaveLab: () => ask(server.DELETE('/api/lab')),
 
   visionSettings: () => ask(server.GET('/api/vision')),
   /** `base` has the settings that the editing began from; with null, whatever they are by now is replaced */

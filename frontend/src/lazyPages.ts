@@ -12,6 +12,7 @@ export const lazyPages = {
   scenarios: () => import('./pages/scenarios/Scenarios.svelte'),
   'comm-tests': () => import('./pages/comm_tests/CommTests.svelte'),
   sessions: () => import('./pages/sessions/Sessions.svelte'),
+  robots: () => import('./pages/robots/Robots.svelte'),
   figures: () => import('./pages/figures/Figures.svelte'),
   gamepads: () => import('./pages/gamepads/Gamepads.svelte'),
   replay: () => import('./pages/replay/Replay.svelte'),

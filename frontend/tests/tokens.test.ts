@@ -126,13 +126,13 @@ describe('sizes and colours come from tokens.css', () => {
 
 /** Where a colour of state may stand; a folder ends with a slash. */
 const PLACES: Readonly<Record<string, readonly string[]>> = {
-  armed: ['parts/state/ArmedState.svelte', 'pages/operate/Arm.svelte', 'shell/RobotNow.svelte', 'flight/'],
+  armed: ['parts/state/ArmedState.svelte', 'pages/operate/Arm.svelte', 'shell/RobotNow.svelte', 'pages/robots/RobotTile.svelte', 'flight/'],
   recording: ['shell/Recording.svelte', 'pages/sessions/RecordingNow.svelte', 'pages/sessions/SessionRow.svelte', 'flight/'],
   replay: ['pages/replay/', 'parts/Panel.svelte', 'shell/', 'App.svelte', 'styles/'],
-  stop: ['shell/StopButton.svelte', 'pages/operate/drive/PadMap.svelte', 'drive/', 'flight/'],
+  stop: ['shell/StopButton.svelte', 'pages/robots/StopAll.svelte', 'pages/operate/drive/PadMap.svelte', 'drive/', 'flight/'],
   alarm: [
     // alarms, faults and a lost link
-    'shell/', 'flight/', 'panels/events/', 'panels/console/', 'parts/Sheet.svelte', 'parts/state/', 'pages/operate/Failsafe.svelte', 'pages/replay/SeekBar.svelte', 'pages/sessions/SessionRow.svelte', 'story/', 'pages/sessions/dive/MomentCard.svelte',
+    'shell/', 'flight/', 'panels/events/', 'panels/console/', 'parts/Sheet.svelte', 'parts/state/', 'pages/operate/Failsafe.svelte', 'pages/replay/SeekBar.svelte', 'pages/sessions/SessionRow.svelte', 'story/', 'pages/sessions/dive/MomentCard.svelte', 'pages/robots/RobotTile.svelte',
     // a check that the robot did not pass
     'parts/Sign.svelte', 'parts/Judged.svelte', 'pages/bring_up/StepResults.svelte', 'pages/bring_up/DeviceChips.svelte',
     // a drawing of what is red itself: a wire, a magnet's pole

@@ -17,6 +17,7 @@ const CHAPTERS: Readonly<Partial<Record<string, string>>> & Readonly<Record<Page
   'sessions/compare': 'use/compare/',
   gamepads: 'use/operate/#gamepads',
   replay: 'use/sessions/#replay',
+  robots: 'run/roster/',
   figures: 'run/lab/#figures',
   system: 'run/troubleshoot/',
   people: 'run/access/',

@@ -8,6 +8,7 @@ export const pages = {
   scenarios: 'Scenarios',
   'comm-tests': 'Comm tests',
   sessions: 'Sessions',
+  robots: 'Robots',
   figures: 'Figures',
   system: 'System',
   gamepads: 'Gamepads',
