@@ -113,7 +113,7 @@ export const api = {
   auditFile: (query: AuditQuery) =>
     download(server.GET('/api/audit/csv', { params: { query: { ...query, spreadsheet: ownSpreadsheet() } }, parseAs: 'stream', fetch: within(null) })),
 
-  labRobots: () => ask(server.GET('/api/robots')),
+  roster: () => ask(server.GET('/api/robots')),
   makeJoiningCode: () => ask(server.POST('/api/robots/codes')),
   stopAll: () => ask(server.POST('/api/robots/stop')),
   removeRobot: (robot: string) => command(server.DELETE('/api/robots/{robot}', { params: { path: { robot } } })),

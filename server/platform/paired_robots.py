@@ -12,7 +12,7 @@ from server.platform.settings import DataFolder
 ROBOTS_MAX = 100
 
 
-class UnknownRobotError(NotFoundError):
+class UnpairedRobotError(NotFoundError):
     """No robot of this name has joined the lab"""
 
     def __init__(self, name: str) -> None:
@@ -67,11 +67,11 @@ class PairedRobots:
         return [robot for _, robot in sorted(self._robots.items())]
 
     def get(self, name: str) -> PairedRobot:
-        """Return the robot of this name. Raise UnknownRobotError."""
+        """Return the robot of this name. Raise UnpairedRobotError."""
         try:
             return self._robots[name]
         except KeyError:
-            raise UnknownRobotError(name) from None
+            raise UnpairedRobotError(name) from None
 
     def check_room(self, name: str) -> None:
         """Raise RobotPairedError, or TooManyRobotsError, where no robot of this name can be added."""
@@ -87,7 +87,7 @@ class PairedRobots:
             self._write(self._robots | {robot.name: robot})
 
     def remove(self, name: str) -> PairedRobot:
-        """Remove a robot, durably, and return it. Raise UnknownRobotError."""
+        """Remove a robot, durably, and return it. Raise UnpairedRobotError."""
         with self._changing:
             robot = self.get(name)
             self._write({other: robot for other, robot in self._robots.items() if other != name})

@@ -153,6 +153,13 @@ export interface paths {
     "/api/imports": {
         post: operations["importSession"];
     };
+    "/api/lab": {
+        get: operations["getLab"];
+        delete: operations["leaveLab"];
+    };
+    "/api/lab/join": {
+        post: operations["joinLab"];
+    };
     "/api/lab/robots": {
         get: operations["listLabRobots"];
         post: operations["addLabRobot"];
@@ -290,6 +297,21 @@ export interface paths {
     };
     "/api/robot/stop": {
         post: operations["stopRobot"];
+    };
+    "/api/robots": {
+        get: operations["listRobots"];
+    };
+    "/api/robots/codes": {
+        post: operations["makeJoiningCode"];
+    };
+    "/api/robots/join": {
+        post: operations["joinRobot"];
+    };
+    "/api/robots/stop": {
+        post: operations["stopAllRobots"];
+    };
+    "/api/robots/{robot}": {
+        delete: operations["removeRobot"];
     };
     "/api/scenarios": {
         get: operations["listScenarios"];
@@ -1596,6 +1618,14 @@ export interface components {
                 number
             ];
         };
+        /** @description The answer to a robot: the lab's name, its router's port, and the robot's certificate with its key. */
+        IssuedMembership: {
+            authority: string;
+            certificate: string;
+            key: string;
+            lab: string;
+            router_port: number;
+        };
         /** @description An export job; its file is stored for some days. */
         Job: {
             /** @description the file's size; null until it is done */
@@ -1628,7 +1658,28 @@ export interface components {
             state: "waiting" | "running" | "done" | "failed";
             wanted: components["schemas"]["ExportOptions"];
         };
+        /** @description A lab's address, and a code of it. */
+        Joining: {
+            address: string;
+            code: string;
+        };
+        /** @description A robot that joins by a code: its own page, that page's certificate, and a token for reading it. */
+        JoiningRobot: {
+            address: string;
+            code: string;
+            fingerprint: string;
+            name: string;
+            token: string;
+        };
         JsonValue: unknown;
+        /** @description The lab that the robot has joined; `name` is null without one. `joined` in s since 1970. */
+        LabMembership: {
+            address: string;
+            /** @description true while the lab's router is connected */
+            connected: boolean;
+            joined: number | null;
+            name: string | null;
+        };
         /** @description A robot of a lab, and what comes of pulling from it. */
         LabRobot: {
             /**
@@ -1670,6 +1721,10 @@ export interface components {
             format: "mucat-layout";
             panels: components["schemas"]["PlacedPanel"][];
             version: number;
+        };
+        /** @description The end of a membership; a lab that is not `notified` lists the robot until it is removed there. */
+        LeftLab: {
+            notified: boolean;
         };
         /** @description A parameter that was not set, and the reason. */
         LeftOut: {
@@ -1750,6 +1805,13 @@ export interface components {
             qr_svg: string;
             /** @enum {string} */
             role: "viewer" | "operator";
+        };
+        /** @description A code by which one robot joins; `expires` in s since 1970, `command` is for the robot's shell. */
+        MadeJoiningCode: {
+            address: string;
+            code: string;
+            command: string;
+            expires: number;
         };
         /** @description A reading link with its token, which is shown only this once. */
         MadeReadingLink: {
@@ -2244,6 +2306,49 @@ export interface components {
             };
             step: components["schemas"]["StepStart"];
         };
+        /** @description A robot as it is now. A robot that has left the lab says so with its last presence. */
+        Presence: {
+            /** @description of its own page; empty where that is for its computer alone */
+            address: string;
+            alarms: components["schemas"]["PresentAlarm"][];
+            armed: boolean;
+            /** @description V; null without a recent one */
+            battery: number | null;
+            /** @description s until the low-battery alarm, estimated */
+            battery_left: number | null;
+            /** @description true while its board answers */
+            connected: boolean;
+            /** @description m; null without a recent one */
+            depth: number | null;
+            /** @description bytes */
+            disk_free: number;
+            /** @description bytes */
+            disk_total: number;
+            /** @description of its certificate; empty without TLS */
+            fingerprint: string;
+            /** @default false */
+            left: boolean;
+            /** @description null where none is going on */
+            mission: components["schemas"]["PresentMission"] | null;
+            /** @description null while its runtime is silent */
+            mode: ("disarmed" | "manual" | "automatic" | "test" | "failsafe") | null;
+            /** @description name of the session being recorded */
+            recording: string | null;
+            software: string;
+        };
+        /** @description An active alarm of a robot. */
+        PresentAlarm: {
+            /** @enum {string} */
+            severity: "info" | "caution" | "alarm";
+            what: string;
+        };
+        /** @description The mission that a robot carries out, or has carried out last; `progress` from 0 to 1. */
+        PresentMission: {
+            /** @enum {string} */
+            phase: "running" | "paused" | "succeeded" | "failed" | "ended";
+            progress: number;
+            title: string;
+        };
         /** @description The firmware that was on the board before the last upload of another one. */
         PreviousFirmware: {
             /** @description on the robot's computer */
@@ -2429,6 +2534,28 @@ export interface components {
         Restored: {
             changed: components["schemas"]["ChangedValue"][];
             left_out: components["schemas"]["LeftOut"][];
+        };
+        /** @description The lab's robots by name; `problem` says why none can be heard, empty otherwise. */
+        RosterDetails: {
+            problem: string;
+            robots: components["schemas"]["RosterRobot"][];
+        };
+        /** @description A robot that has joined the lab, and its last presence. */
+        RosterRobot: {
+            /** @description of its own page; empty where that is open to no other computer */
+            address: string;
+            /** @description s by which its clock is ahead of the lab's; null until measured */
+            clock_offset: number | null;
+            /** @description m; of the last minute, once a second */
+            depths: (number | null)[];
+            /** @description s since 1970 */
+            joined: number;
+            name: string;
+            presence: components["schemas"]["Presence"] | null;
+            /** @description false where it is not heard now */
+            present: boolean;
+            /** @description s since its last presence; null before the first */
+            seen: number | null;
         };
         /** @description A run; `sample` is the name of a shipped one, and empty for others. */
         RunSummary: {
@@ -2946,6 +3073,13 @@ export interface components {
             target: number;
             /** @description largest distance from the start that counts as settled */
             tolerance: number;
+        };
+        /** @description The answers of one robot to STOP; `zenoh` and `https` are empty where it has answered that way. */
+        StoppedRobot: {
+            https: string;
+            name: string;
+            stopped: boolean;
+            zenoh: string;
         };
         /** @description Use of the disk that holds the data folder, and the rules of retention. */
         Storage: {
@@ -3609,11 +3743,16 @@ export type IdentifiedNumber = components['schemas']['IdentifiedNumber'];
 export type Identity = components['schemas']['Identity'];
 export type Imported = components['schemas']['Imported'];
 export type ImuRaw = components['schemas']['ImuRaw'];
+export type IssuedMembership = components['schemas']['IssuedMembership'];
 export type Job = components['schemas']['Job'];
+export type Joining = components['schemas']['Joining'];
+export type JoiningRobot = components['schemas']['JoiningRobot'];
 export type JsonValue = components['schemas']['JsonValue'];
+export type LabMembership = components['schemas']['LabMembership'];
 export type LabRobot = components['schemas']['LabRobot'];
 export type LayoutDetails = components['schemas']['LayoutDetails'];
 export type LayoutDocument = components['schemas']['LayoutDocument'];
+export type LeftLab = components['schemas']['LeftLab'];
 export type LeftOut = components['schemas']['LeftOut'];
 export type Likeness = components['schemas']['Likeness'];
 export type Lines = components['schemas']['Lines'];
@@ -3623,6 +3762,7 @@ export type LinkFrames = components['schemas']['LinkFrames'];
 export type Loop = components['schemas']['Loop'];
 export type LoopCommand = components['schemas']['LoopCommand'];
 export type MadeCode = components['schemas']['MadeCode'];
+export type MadeJoiningCode = components['schemas']['MadeJoiningCode'];
 export type MadeReadingLink = components['schemas']['MadeReadingLink'];
 export type MadeToken = components['schemas']['MadeToken'];
 export type MeasureGyroCommand = components['schemas']['MeasureGyroCommand'];
@@ -3675,6 +3815,9 @@ export type PlannedMissionStep = components['schemas']['PlannedMissionStep'];
 export type PredictedChannel = components['schemas']['PredictedChannel'];
 export type PredictedStep = components['schemas']['PredictedStep'];
 export type PredictionQuery = components['schemas']['PredictionQuery'];
+export type Presence = components['schemas']['Presence'];
+export type PresentAlarm = components['schemas']['PresentAlarm'];
+export type PresentMission = components['schemas']['PresentMission'];
 export type PreviousFirmware = components['schemas']['PreviousFirmware'];
 export type Problem = components['schemas']['Problem'];
 export type Profile = components['schemas']['Profile'];
@@ -3692,6 +3835,8 @@ export type RecordedMission = components['schemas']['RecordedMission'];
 export type RecordedTopic = components['schemas']['RecordedTopic'];
 export type RelayStart = components['schemas']['RelayStart'];
 export type Restored = components['schemas']['Restored'];
+export type RosterDetails = components['schemas']['RosterDetails'];
+export type RosterRobot = components['schemas']['RosterRobot'];
 export type RunSummary = components['schemas']['RunSummary'];
 export type SavedLayout = components['schemas']['SavedLayout'];
 export type ScenarioCheck = components['schemas']['ScenarioCheck'];
@@ -3728,6 +3873,7 @@ export type State = components['schemas']['State'];
 export type StateSilence = components['schemas']['StateSilence'];
 export type SteeringCommand = components['schemas']['SteeringCommand'];
 export type StepStart = components['schemas']['StepStart'];
+export type StoppedRobot = components['schemas']['StoppedRobot'];
 export type Storage = components['schemas']['Storage'];
 export type Story = components['schemas']['Story'];
 export type StoryFigures = components['schemas']['StoryFigures'];
@@ -4614,6 +4760,43 @@ export interface operations {
             };
         };
     };
+    getLab: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["LabMembership"];
+                };
+            };
+        };
+    };
+    leaveLab: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["LeftLab"];
+                };
+            };
+        };
+    };
+    joinLab: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Joining"];
+            };
+        };
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["LabMembership"];
+                };
+            };
+        };
+    };
     listLabRobots: {
         parameters: { query?: never };
         requestBody?: never;
@@ -5312,6 +5495,66 @@ export interface operations {
     };
     stopRobot: {
         parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            204: { content?: never };
+        };
+    };
+    listRobots: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["RosterDetails"];
+                };
+            };
+        };
+    };
+    makeJoiningCode: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            201: {
+                content: {
+                    "application/json": components["schemas"]["MadeJoiningCode"];
+                };
+            };
+        };
+    };
+    joinRobot: {
+        parameters: { query?: never };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["JoiningRobot"];
+            };
+        };
+        responses: {
+            201: {
+                content: {
+                    "application/json": components["schemas"]["IssuedMembership"];
+                };
+            };
+        };
+    };
+    stopAllRobots: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["StoppedRobot"][];
+                };
+            };
+        };
+    };
+    removeRobot: {
+        parameters: {
+            query?: never;
+            path: {
+                robot: string;
+            };
+        };
         requestBody?: never;
         responses: {
             204: { content?: never };

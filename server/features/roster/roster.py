@@ -20,7 +20,7 @@ from robot_runtime.errors import NoAnswerError, RefusedError
 from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY
 from server.features.roster.fleet_session import FleetSession
 from server.features.roster.router_process import AGAIN_SECONDS, RouterProcess
-from server.features.roster.schemas import LabRobot, LabRobots, StoppedRobot
+from server.features.roster.schemas import RosterDetails, RosterRobot, StoppedRobot
 from server.http.pinned_requests import OtherServerRefusedError, UnreachableError, send
 from server.interchange.presence import Presence
 from server.platform.authority import Authority
@@ -30,7 +30,7 @@ from server.platform.notices import Notices
 from server.platform.paired_robots import (
     PairedRobot,
     PairedRobots,
-    UnknownRobotError,
+    UnpairedRobotError,
 )
 from server.platform.settings import Settings, SetupError
 
@@ -119,7 +119,7 @@ class Roster:
         try:
             paired = self._robots.get(robot)
             presence = Presence.model_validate_json(data)
-        except UnknownRobotError:
+        except UnpairedRobotError:
             return
         except ValidationError as problem:
             log.warning("a presence of %s cannot be read: %d mistakes", robot, problem.error_count())
@@ -137,9 +137,9 @@ class Roster:
         """Take in that a robot has come or gone."""
         self._seen.setdefault(robot, _Seen()).alive = alive
 
-    def listed(self) -> LabRobots:
+    def listed(self) -> RosterDetails:
         """Return all robots, by name."""
-        return LabRobots(
+        return RosterDetails(
             robots=[self._describe(robot) for robot in self._robots.all()], problem=self._router.problem
         )
 
@@ -163,7 +163,7 @@ class Roster:
         return files
 
     async def remove(self, name: str, how: str = "was removed from the lab") -> None:
-        """Remove a robot: it is let in no more. Raise UnknownRobotError, CertificateNotMadeError."""
+        """Remove a robot: it is let in no more. Raise UnpairedRobotError, CertificateNotMadeError."""
         self._robots.get(name)
         try:
             # First of all: what follows may fail, and a robot that is listed can be removed once more.
@@ -231,9 +231,9 @@ class Roster:
         if any(certificate.name == name for certificate in authority.issued()):
             authority.revoke(name)
 
-    def _describe(self, robot: PairedRobot) -> LabRobot:
+    def _describe(self, robot: PairedRobot) -> RosterRobot:
         seen = self._seen.get(robot.name, _Seen())
-        return LabRobot(
+        return RosterRobot(
             name=robot.name,
             joined=robot.joined,
             present=self._is_present(seen),

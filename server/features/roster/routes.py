@@ -16,8 +16,8 @@ from server.features.roster.router_process import RouterProcess
 from server.features.roster.schemas import (
     IssuedMembership,
     JoiningRobot,
-    LabRobots,
     MadeJoiningCode,
+    RosterDetails,
     StoppedRobot,
 )
 from server.http.audit import address_of
@@ -25,7 +25,7 @@ from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.sign_in.pairing_codes import TooManyTriesError
 from server.http.sign_in.policy import Need
-from server.platform.paired_robots import UnknownRobotError
+from server.platform.paired_robots import UnpairedRobotError
 
 NOT_ADDED = {409: "A robot of this name has joined already, or too many have"}
 
@@ -33,7 +33,7 @@ router = Operations(prefix="/api/robots", tags=["lab"])
 
 
 @router.operation("GET", Need.VIEWER)
-async def list_robots(roster: Provided[Roster]) -> LabRobots:
+async def list_robots(roster: Provided[Roster]) -> RosterDetails:
     """List the robots that have joined this lab, with their last presences."""
     return roster.listed()
 
@@ -89,7 +89,7 @@ async def stop_all_robots(roster: Provided[Roster]) -> list[StoppedRobot]:
     return await roster.stop_all()
 
 
-@router.operation("DELETE /{robot}", Need.ADMINISTER, UnknownRobotError, CertificateNotMadeError)
+@router.operation("DELETE /{robot}", Need.ADMINISTER, UnpairedRobotError, CertificateNotMadeError)
 async def remove_robot(roster: Provided[Roster], robot: Annotated[str, Path(max_length=32)]) -> None:
     """Remove a robot from this lab.
 

@@ -9,7 +9,7 @@ from server.interchange.presence import Presence
 from server.platform.schema_base import Schema
 
 
-class LabRobot(Schema):
+class RosterRobot(Schema):
     """A robot that has joined the lab, and its last presence."""
 
     name: str
@@ -26,10 +26,10 @@ class LabRobot(Schema):
     ]
 
 
-class LabRobots(Schema):
+class RosterDetails(Schema):
     """The lab's robots by name; `problem` says why none can be heard, empty otherwise."""
 
-    robots: list[LabRobot]
+    robots: list[RosterRobot]
     problem: str
 
 

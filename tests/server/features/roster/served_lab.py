@@ -22,7 +22,7 @@ from tests.shell import ShellAuth
 
 
 @dataclass
-class ServedLab:
+class RosterLab:
     """A running lab, and an HTTP client of it that has the shell's token."""
 
     api: httpx.AsyncClient
@@ -51,7 +51,7 @@ class ServedLab:
 
 
 @asynccontextmanager
-async def serve_lab(folder: Path, router_port: int, *, tls: bool = True) -> AsyncIterator[ServedLab]:
+async def serve_lab(folder: Path, router_port: int, *, tls: bool = True) -> AsyncIterator[RosterLab]:
     """Run a lab on a port of the system's choice."""
     data = DataFolder(folder / "lab")
     make_folders(data)
@@ -74,7 +74,7 @@ async def serve_lab(folder: Path, router_port: int, *, tls: bool = True) -> Asyn
             url, auth = f"{settings.scheme}://127.0.0.1:{port}/api", ShellAuth(data)
             verify = trust_only(data) if tls else False
             async with httpx.AsyncClient(base_url=url, timeout=SECONDS, auth=auth, verify=verify) as api:
-                yield ServedLab(api, settings)
+                yield RosterLab(api, settings)
         finally:
             server.should_exit = True
             await running

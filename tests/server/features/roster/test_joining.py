@@ -16,14 +16,14 @@ from robot_runtime.contract.topics import STATE
 from robot_runtime.transport.blocks import Block
 from server.features.roster.joining_codes import JoiningCodes, LabWithoutTlsError
 from server.platform.settings import Settings
-from tests.server.features.roster.served_lab import ServedLab, serve_lab
+from tests.server.features.roster.served_lab import RosterLab, serve_lab
 from tests.server.ports import reserved_port
 from tests.server.serving import Served, serve
 from tests.server.waiting import SECONDS
 
 
 @pytest.fixture
-async def lab(tmp_path: Path) -> AsyncIterator[ServedLab]:
+async def lab(tmp_path: Path) -> AsyncIterator[RosterLab]:
     with reserved_port() as port:
         async with serve_lab(tmp_path, port) as lab:
             yield lab
@@ -48,7 +48,7 @@ def state(robot: Served, **values: object) -> Block:
     return Block.of(STATE, 1, 0, json.dumps([document]).encode())
 
 
-async def test_a_robot_joins_is_seen_stopped_and_leaves(lab: ServedLab, robot: Served) -> None:
+async def test_a_robot_joins_is_seen_stopped_and_leaves(lab: RosterLab, robot: Served) -> None:
     assert (await robot.api.get("/lab")).json()["name"] is None
     joined = (await join(robot, await lab.code())).raise_for_status().json()
     assert joined["name"]
@@ -74,7 +74,7 @@ async def test_a_robot_joins_is_seen_stopped_and_leaves(lab: ServedLab, robot: S
 
 
 async def test_a_robot_that_is_removed_loses_its_way_and_the_lab_its_token(
-    lab: ServedLab, robot: Served
+    lab: RosterLab, robot: Served
 ) -> None:
     (await join(robot, await lab.code())).raise_for_status()
     await lab.see("the robot", armed=False)
@@ -99,7 +99,7 @@ async def test_a_robot_swims_on_without_its_lab(robot: Served, tmp_path: Path) -
             await again.see("the robot, which has come back by itself", armed=False)
 
 
-async def test_a_code_works_once_and_for_this_lab_alone(lab: ServedLab, robot: Served) -> None:
+async def test_a_code_works_once_and_for_this_lab_alone(lab: RosterLab, robot: Served) -> None:
     made = await lab.code()
     code, pin = made["code"][:11], made["code"][12:]
     wrong = made | {"code": f"{code}-{'A' * 8}-{'A' * 8}"}
@@ -130,7 +130,7 @@ async def test_what_is_no_address_of_a_lab_is_refused(robot: Served, address: st
     assert (answer.status_code, "no address of a lab" in answer.json()["detail"]) == (422, True)
 
 
-async def test_two_robots_of_one_name_do_not_join(lab: ServedLab, robot: Served) -> None:
+async def test_two_robots_of_one_name_do_not_join(lab: RosterLab, robot: Served) -> None:
     (await join(robot, await lab.code())).raise_for_status()
     made = await lab.code()
     body = {"name": "turtle-1", "address": "", "fingerprint": "", "token": "t"}
@@ -138,7 +138,7 @@ async def test_two_robots_of_one_name_do_not_join(lab: ServedLab, robot: Served)
     assert (second.status_code, "another name" in second.json()["detail"]) == (409, True)
 
 
-async def test_a_lab_without_tls_makes_no_code(lab: ServedLab) -> None:
+async def test_a_lab_without_tls_makes_no_code(lab: RosterLab) -> None:
     bare = lab.settings.with_section(replace(lab.settings.server, tls=False))
     with pytest.raises(LabWithoutTlsError, match=r"server\.tls = true"):
         JoiningCodes(bare, SteadyClock()).make("lab")
