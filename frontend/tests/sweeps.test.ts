@@ -26,7 +26,7 @@ const VARIANTS = [
 ];
 const sweep = (variants: SweepVariant[], parameters: SweepParameter[]): SweepDetail =>
   ({ parameters, variants, figures: [RMSE, ERROR], best_figure: 'rmse', best: null }) as unknown as SweepDetail;
-const GRID = sweep(VARIANTS, [parameter(KP), parameter(KD), parameter(WATER)]);
+const GRID = sweep(VARIANTS, [parameter(KP, 'list', [10, 3]), parameter(KD, 'list', [0.5, 1]), parameter(WATER, 'list', ['pool', 'natural'])]);
 const AXES = axesOf(GRID);
 const seen = (entries: Record<string, string>) => new Map(Object.entries(entries));
 const plane = (entries: Record<string, string> = {}) => planeOf(GRID, AXES, seen(entries));
@@ -34,7 +34,9 @@ const plane = (entries: Record<string, string> = {}) => planeOf(GRID, AXES, seen
 describe('the axes of a sweep', () => {
   it('are what varies, numbers in order, words as they came', () => {
     expect(AXES.map(({ values }) => values)).toEqual([[3, 10], [0.5, 1], ['pool', 'natural']]);
-    expect(axesOf(sweep([variant(1, [1, null, 'pool'], 1), variant(2, [2, null, 'pool'], 2)], GRID.parameters)).map(({ place }) => place)).toEqual([0]);
+    // Before the first run, too; what each seed draws for itself is none.
+    expect(axesOf({ ...GRID, variants: [] })).toEqual(AXES);
+    expect(axesOf(sweep([variant(1, [1, null], 1)], [parameter(KP, 'list', [1, 2]), parameter(KD, 'random', [0, 1])])).map(({ place }) => place)).toEqual([0]);
   });
 
   it('are the first two, until an address names others', () => {

@@ -39,11 +39,12 @@ export interface Cell {
   readonly failed: number;
 }
 
-/** The parameters that can be an axis: those of which variants have two values and more. */
+/** The parameters that can be an axis: those with two values and more, of a list or a range also before all have been run. */
 export function axesOf({ parameters, variants }: Pick<SweepDetail, 'parameters' | 'variants'>): Axis[] {
   return parameters.flatMap((parameter, place) => {
-    const values = [...new Set(variants.map(({ values }) => values[place]).filter((value) => value !== null && value !== undefined))];
     const scattered = parameter.kind === 'random' || parameter.kind === 'search';
+    const found = scattered ? variants.map(({ values }) => values[place]) : parameter.values;
+    const values = [...new Set(found.filter((value) => value !== null && value !== undefined))];
     return values.length < 2 ? [] : [{ place, parameter, values: inOrder(values), scattered }];
   });
 }
