@@ -114,8 +114,8 @@ CREATE TABLE "session" (
 	kept BOOLEAN DEFAULT '0' NOT NULL, 
 	deleted FLOAT
 , archived FLOAT);
-CREATE UNIQUE INDEX session_identifier ON session (identifier);
 CREATE INDEX ix_session_state ON session (state);
+CREATE UNIQUE INDEX session_identifier ON session (identifier);
 CREATE TABLE "marker" (
 	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
 	session_id INTEGER NOT NULL, 

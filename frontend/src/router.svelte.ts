@@ -5,7 +5,7 @@ import { pages } from './texts/pages';
 /** The pages that have a tab. */
 export const PAGES = ['operate', 'tune', 'missions', 'scenarios', 'comm-tests', 'sessions', 'system'] as const;
 /** The pages of a lab that have a tab. */
-const LAB_PAGES = ['robots', 'sessions', 'figures', 'system'] as const;
+const LAB_PAGES = ['robots', 'scenarios', 'sessions', 'figures', 'system'] as const;
 /** The pages of a lab without a tab. */
 const LAB_INNER: readonly PageName[] = ['replay', 'people'];
 type Tab = (typeof PAGES | typeof LAB_PAGES)[number];

@@ -340,7 +340,7 @@ class SweepRunRow(SQLModel, table=True):
     sweep_id: int = Field(foreign_key="sweep.id")
     number: int
     variant: int
-    seed: int
+    seed: int = Field(sa_type=BIG)
     parameter_values: str
     key: str = Field(foreign_key="run_figures.key", index=True)
 

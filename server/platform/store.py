@@ -160,3 +160,12 @@ def insert_row(connection: Connection, table: type[SQLModel], values: Mapping[st
     key = connection.execute(insert(table).values(**values)).inserted_primary_key
     assert key is not None
     return int(key[0])
+
+
+def insert_unless_there(connection: Connection, table: type[SQLModel]) -> Any:
+    """Return an INSERT that can say what it does with rows that are there, in the database's dialect."""
+    if connection.dialect.name == "postgresql":
+        from sqlalchemy.dialects.postgresql import insert as insert_into
+    else:
+        from sqlalchemy.dialects.sqlite import insert as insert_into  # type: ignore[assignment]
+    return insert_into(table)

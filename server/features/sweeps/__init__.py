@@ -6,6 +6,7 @@ from server.features.sweeps.config import SweepsConfig
 FEATURE = Feature(
     name="sweeps",
     section=SweepsConfig,
+    place="both",
     optional=True,
     routes=("server.features.sweeps.routes:router",),
     commands={

@@ -25,6 +25,7 @@ from server.features.sweeps.order import SweepOrder, reopen
 from server.features.sweeps.run_task import WorkerIdentity, identify
 from server.features.sweeps.simulation import NICENESS
 from server.features.sweeps.store import find_outcomes
+from server.platform.engine import read_location
 from server.platform.store import Reader
 
 
@@ -35,7 +36,7 @@ def main() -> int:
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s %(name)s: %(message)s")
     order = SweepOrder.model_validate_json(sys.stdin.buffer.read())
     try:
-        _perform(order, Path(sys.argv[1]))
+        _perform(order, read_location(sys.argv[1]))
     except ConfigError as problem:
         _say({"problem": " ".join(problem.texts)})
     except Exception as problem:
@@ -46,7 +47,7 @@ def main() -> int:
     return 0
 
 
-def _perform(order: SweepOrder, database: Path) -> None:
+def _perform(order: SweepOrder, database: Path | str) -> None:
     sweep = reopen(order.text, order.scenario)
     identity = identify(BUILD)
     with closing(Reader(database)) as store, closing(_workers(order, identity)) as workers:

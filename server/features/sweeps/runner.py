@@ -289,7 +289,7 @@ class SweepRunner:
         loop = asyncio.get_running_loop()
         with SideProcess(
             "server.features.sweeps",
-            [str(self._settings.data.database)],
+            [str(self._settings.data.database_location)],
             order.model_dump_json().encode(),
             {"MUCAT_BUILD": str(self._settings.build)},
         ) as process:

@@ -7,14 +7,13 @@ from time import time
 from typing import Any
 
 from sqlalchemy import Connection, Select, delete, func, update
-from sqlalchemy.dialects.sqlite import insert
 from sqlmodel import col, desc, select
 
 from robot_runtime.experiments.sweep.parameter import Value
 from server.features.sweeps.run_task import RunOutcome, WorkerIdentity
 from server.platform.errors import NotFoundError
 from server.platform.models import RunFiguresRow, SessionRow, SweepRow, SweepRunRow
-from server.platform.store import Reader, Store, insert_row
+from server.platform.store import Reader, Store, insert_row, insert_unless_there
 
 SWEEPS_MAX = 500
 LISTED_MAX = 200
@@ -143,15 +142,17 @@ class SweepStore:
             }
             for run in runs
         ]
-        replaced = insert(SweepRunRow)
-        replaced = replaced.on_conflict_do_update(
-            index_elements=["sweep_id", "number"],
-            set_={name: replaced.excluded[name] for name in ("variant", "seed", "parameter_values", "key")},
-        )
 
         def write(connection: Connection) -> None:
             if rows:
-                connection.execute(insert(RunFiguresRow).on_conflict_do_nothing(), figures)
+                added = insert_unless_there(connection, RunFiguresRow)
+                connection.execute(added.on_conflict_do_nothing(), figures)
+                replaced = insert_unless_there(connection, SweepRunRow)
+                columns = ("variant", "seed", "parameter_values", "key")
+                replaced = replaced.on_conflict_do_update(
+                    index_elements=["sweep_id", "number"],
+                    set_={name: replaced.excluded[name] for name in columns},
+                )
                 connection.execute(replaced, rows)
             connection.execute(update(SweepRow).where(col(SweepRow.id) == sweep).values(**progress))
 
