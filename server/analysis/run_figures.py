@@ -1,6 +1,6 @@
 """Figures of a run in simulated time that is not recorded: the same code as a comparison of sessions."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import inf
 from typing import Any
 
@@ -45,18 +45,25 @@ class RunSamples:
     """The samples of a run that figures are computed of, gathered block by block."""
 
     def __init__(self) -> None:
-        self._blocks: dict[AnyTopic, list[Block]] = {}
+        # Bytes alone: thousands of blocks that stay would cost the garbage collector more than all else.
+        self._payloads: dict[AnyTopic, list[bytes]] = {}
+        self._counts: dict[AnyTopic, list[int]] = {}
 
     def add(self, blocks: Iterable[Block]) -> None:
         """Take in blocks."""
         for block in blocks:
             if block.topic in _TOPICS:
-                self._blocks.setdefault(block.topic, []).append(block)
+                self._payloads.setdefault(block.topic, []).append(block.payload)
+                self._counts.setdefault(block.topic, []).append(block.count)
 
     def record(self, duration: float) -> Recording:
         """Return the samples as a recording of this duration, s, from time 0 on."""
         return _RunRecording(
-            duration, {topic.name: [*_pack(topic, blocks)] for topic, blocks in self._blocks.items()}
+            duration,
+            {
+                topic.name: [*_pack(topic, payloads, self._counts[topic])]
+                for topic, payloads in self._payloads.items()
+            },
         )
 
 
@@ -85,23 +92,23 @@ def was_armed(recording: Recording) -> bool:
     return bool(read_history(recording, Samples()).armed)
 
 
-def _pack(topic: AnyTopic, blocks: Iterable[Block]) -> Iterator[StoredChunk]:
-    """Yield the chunks of a topic's blocks, which follow each other."""
-    gathered: list[Block] = []
-    number = size = 0
-    for block in blocks:
-        if gathered and size + len(block.data) > _CHUNK_BYTES:
-            yield _chunk(topic, number, gathered)
-            gathered, size, number = [], 0, number + 1
-        gathered.append(block)
-        size += len(block.data)
-    yield _chunk(topic, number, gathered)
+def _pack(topic: AnyTopic, payloads: Sequence[bytes], counts: Sequence[int]) -> Iterator[StoredChunk]:
+    """Yield the chunks of a topic's payloads, which follow each other."""
+    begin = size = samples = 0
+    for number, payload in enumerate(payloads):
+        if size and size + len(payload) > _CHUNK_BYTES:
+            yield _chunk(topic, samples, payloads[begin:number], sum(counts[begin:number]))
+            samples += sum(counts[begin:number])
+            begin, size = number, 0
+        size += len(payload)
+    yield _chunk(topic, samples, payloads[begin:], sum(counts[begin:]))
 
 
-def _chunk(topic: AnyTopic, number: int, blocks: list[Block]) -> StoredChunk:
-    count = sum(block.count for block in blocks)
-    encoding, data, first, last = encode(topic, [block.payload for block in blocks], count)
-    return StoredChunk(number, first, last, blocks[0].first, count, encoding, data)
+def _chunk(topic: AnyTopic, samples: int, payloads: Sequence[bytes], count: int) -> StoredChunk:
+    """Return the chunk of these payloads; `samples` come before it."""
+    encoding, data, first, last = encode(topic, payloads, count)
+    # Read in order alone: no chunk is asked for by its number.
+    return StoredChunk(0, first, last, samples, count, encoding, data)
 
 
 class _RunRecording(Recording):

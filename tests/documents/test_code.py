@@ -12,8 +12,11 @@ import pytest
 from robot_runtime.contract.craft import read_craft
 from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import DEPTH
+from robot_runtime.experiments.scenario.document import DEFAULT_CRAFT
 from robot_runtime.missions.document import read_mission
+from server.features.sweeps.order import read_document
 from server.health.monitor import HealthMonitor
+from server.library.scenarios import shipped_scenarios
 from server.platform.settings import Settings, read_settings
 from tests.documents import test_commands, test_recipes
 from tests.documents.blocks import DOCS, CodeBlock, read_blocks
@@ -30,6 +33,10 @@ PI_32_BITS = (
     "sudo apt install python3-venv python3-numpy python3-opencv python3-pydantic python3-libgpiod "
     "python3-picamera2 avrdude"
 )
+DASK = (
+    "dask scheduler --protocol tls --port 8786 --tls-ca-file ca.pem --tls-cert certificate.pem "
+    "--tls-key key.pem"
+)
 UNRUN = {
     ("../README.md", "pip install -c constraints.txt ./mucat-*.whl ./mucat_emulator-*_$(uname -m).whl"): (
         "it installs into the system; tests/packages installs the same wheels"
@@ -44,6 +51,8 @@ UNRUN = {
     ("run/sd-card.md", "sudo mucat doctor"): "an installed robot",
     ("run/sd-card.md", "sudo mucat record start pool"): "an installed robot",
     ("run/troubleshoot.md", "systemctl --no-pager --lines 5 status mucat-runtime mucat"): "systemd",
+    ("use/sweeps.md", "from mucat import Lab"): "the notebook sweep does the same",
+    ("use/sweeps.md", DASK): "tests/server/features/sweeps/test_cluster.py does the same",
     ("use/notebooks/index.md", "pip install jupyterlab matplotlib pandas"): "Jupyter and the internet",
 }
 """Blocks that no test runs, by page and first line, and what they would need. Their syntax is checked.
@@ -71,12 +80,18 @@ def read_robot_file(text: str) -> None:
         read_settings(path, Path(folder), None, None, {})
 
 
+def read_sweep_of_the_library(text: str) -> None:
+    """Check a sweep as a server does."""
+    read_document(text, shipped_scenarios(), DEFAULT_CRAFT)
+
+
 READERS: dict[str, Callable[[str], object]] = {
     "reference/craft.md": read_craft,
     "run/proxy.md": read_robot_file,
     "use/doors.md": read_robot_file,
     "use/events.md": read_robot_file,
     "use/missions.md": read_mission,
+    "use/sweeps.md": read_sweep_of_the_library,
 }
 
 

@@ -17,8 +17,10 @@ from pathlib import Path
 from typing import Any
 
 from robot_runtime.contract.limits import ConfigError
+from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.boards import BUILD
 from robot_runtime.transport.lifetime import end_with_parent, give_way
+from server.features.sweeps.config import NO_DASK, has_dask
 from server.features.sweeps.engine import SweepEngine
 from server.features.sweeps.executors import LocalWorkers, Workers
 from server.features.sweeps.order import SweepOrder, reopen
@@ -26,6 +28,7 @@ from server.features.sweeps.run_task import WorkerIdentity, identify
 from server.features.sweeps.simulation import NICENESS
 from server.features.sweeps.store import find_outcomes
 from server.platform.engine import read_location
+from server.platform.errors import ApiError
 from server.platform.store import Reader
 
 
@@ -37,8 +40,8 @@ def main() -> int:
     order = SweepOrder.model_validate_json(sys.stdin.buffer.read())
     try:
         _perform(order, read_location(sys.argv[1]))
-    except ConfigError as problem:
-        _say({"problem": " ".join(problem.texts)})
+    except (ConfigError, RefusedError, ApiError) as problem:
+        _say({"problem": str(problem)})
     except Exception as problem:
         traceback.print_exc()
         _say({"problem": f"The sweep cannot go on: {type(problem).__name__}: {problem}"})
@@ -63,6 +66,8 @@ def _perform(order: SweepOrder, database: Path | str) -> None:
 def _workers(order: SweepOrder, identity: WorkerIdentity) -> Workers:
     if not order.scheduler:
         return LocalWorkers(order.workers)
+    if not has_dask():
+        raise RefusedError(NO_DASK)
     # Only here: most do without Dask, which is large.
     from server.features.sweeps.cluster import ClusterWorkers
 

@@ -1,6 +1,7 @@
 """The section [sweeps] of robot.toml."""
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 from ipaddress import ip_address
 from typing import Annotated
 from urllib.parse import urlsplit
@@ -8,6 +9,11 @@ from urllib.parse import urlsplit
 from robot_runtime.contract.limits import ConfigError, Range
 from robot_runtime.contract.parsing import TOP
 from robot_runtime.contract.problems import EntryProblem
+
+NO_DASK = (
+    "A scheduler needs the package distributed, which is not installed. Install it where µ-CAT is installed, "
+    "with “pip install distributed”."
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +32,11 @@ class SweepsConfig:
     def __post_init__(self) -> None:
         if problem := find_problem(self.scheduler, self.certificates):
             raise ConfigError(problem)
+
+
+def has_dask() -> bool:
+    """Return True where the package distributed is installed."""
+    return find_spec("distributed") is not None
 
 
 def find_problem(scheduler: str, certificates: str) -> EntryProblem | None:

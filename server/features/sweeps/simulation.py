@@ -4,6 +4,7 @@
 whatever process of whatever computer. Workers call it; so nothing here belongs to a server.
 """
 
+import gc
 import json
 from functools import cache
 from hashlib import sha256
@@ -68,6 +69,9 @@ def settle_worker() -> None:
     give_way(NICENESS)
     limit_memory(BYTES_MAX)
     cv2.setNumThreads(1)
+    # What is loaded stays: the garbage collector need not look through it in each run.
+    gc.collect()
+    gc.freeze()
 
 
 @cache

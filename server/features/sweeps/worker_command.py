@@ -2,7 +2,6 @@
 
 import asyncio
 import signal
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -10,11 +9,6 @@ import click
 from server.platform.command_line import FILE, with_settings
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
-
-NO_DASK = (
-    "A scheduler needs the package distributed, which is not installed. Install it where µ-CAT is installed, "
-    "with “pip install distributed”."
-)
 
 
 @click.command()
@@ -26,7 +20,7 @@ def worker(settings: Settings, scheduler: str | None, certificates: Path | None)
 
     Sweeps use only workers that have their software and compute the same bits.
     """
-    from server.features.sweeps.config import SweepsConfig, find_problem
+    from server.features.sweeps.config import NO_DASK, SweepsConfig, find_problem, has_dask
 
     config = settings.section(SweepsConfig)
     address = config.scheduler if scheduler is None else scheduler
@@ -35,7 +29,7 @@ def worker(settings: Settings, scheduler: str | None, certificates: Path | None)
         raise SetupError("Name a scheduler: --scheduler tls://NAME:PORT.")
     if problem := find_problem(address, folder):
         raise SetupError(problem.text)
-    if find_spec("distributed") is None:
+    if not has_dask():
         raise SetupError(NO_DASK)
     asyncio.run(_serve(address, folder))
     return 0
