@@ -276,7 +276,8 @@ LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3
 REFUSALS = {401, 403, 423}
 SAFE = {"GET", "HEAD", "OPTIONS"}
 ABSENT = dict.fromkeys(
-    ("session", "run", "sweep", "device", "layout", "profile", "panel", "mark", "name", "link"), "999"
+    ("robot", "session", "run", "sweep", "device", "layout", "profile", "panel", "mark", "name", "link"),
+    "999",
 )
 ABSENT |= {"export": "0" * 16, "path": "index.html", "robot": "nobody"}
 QUERIES = {"/api/control/take": "over=true"}

@@ -258,6 +258,8 @@ INNER = {
     "session_summary",
     "comm_test_cell",
     "alembic_version",
+    "sweep_run",
+    "run_figures",
 }
 """Tables whose numbers nobody outside the database knows."""
 
