@@ -77,6 +77,7 @@ describe.each([
 const SOURCES = new URL('../src/', import.meta.url);
 /** Colours that are data or print, not the page's own. */
 const OWN_COLOURS: Readonly<Record<string, string>> = {
+  'charts/shades.ts': 'black and white, one of which can be read on any colour',
   'pages/comm_tests/scale.ts': 'a scale of rates, the same in both themes and in files',
   'pages/comm_tests/figure.ts': 'no colour at all',
   'pages/sessions/compare/figure.ts': 'no colour at all',
