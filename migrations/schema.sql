@@ -18,17 +18,6 @@ CREATE TABLE chunk (
 	CONSTRAINT chunk_place UNIQUE (session_id, topic, number), 
 	FOREIGN KEY(session_id) REFERENCES session (id)
 );
-CREATE TABLE gap (
-	id INTEGER NOT NULL, 
-	session_id INTEGER NOT NULL, 
-	topic VARCHAR NOT NULL, 
-	kind VARCHAR NOT NULL, 
-	time FLOAT NOT NULL, 
-	missed INTEGER NOT NULL, 
-	PRIMARY KEY (id), 
-	FOREIGN KEY(session_id) REFERENCES session (id)
-);
-CREATE INDEX ix_gap_session_id ON gap (session_id);
 CREATE TABLE comm_test_cell (
 	id INTEGER NOT NULL, 
 	run_id INTEGER NOT NULL, 
@@ -54,13 +43,22 @@ CREATE TABLE comm_test_cell (
 	CONSTRAINT comm_test_cell_place UNIQUE (run_id, number), 
 	FOREIGN KEY(run_id) REFERENCES comm_test_run (id)
 );
-CREATE TABLE session_tag (
-	id INTEGER NOT NULL, 
-	session_id INTEGER NOT NULL, 
-	tag VARCHAR NOT NULL, 
-	PRIMARY KEY (id), 
-	CONSTRAINT session_tag_place UNIQUE (session_id, tag), 
-	FOREIGN KEY(session_id) REFERENCES session (id)
+CREATE TABLE "comm_test_run" (
+	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+	name VARCHAR NOT NULL, 
+	document VARCHAR NOT NULL, 
+	framing VARCHAR NOT NULL, 
+	direction VARCHAR NOT NULL, 
+	cells INTEGER NOT NULL, 
+	firmware VARCHAR NOT NULL, 
+	tools VARCHAR NOT NULL, 
+	host VARCHAR NOT NULL, 
+	started FLOAT NOT NULL, 
+	ended FLOAT, 
+	state VARCHAR NOT NULL, 
+	problem VARCHAR NOT NULL, 
+	place VARCHAR DEFAULT 'emulated' NOT NULL, 
+	sample VARCHAR DEFAULT ('') NOT NULL
 );
 CREATE TABLE device (
 	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
@@ -71,20 +69,76 @@ CREATE TABLE device (
 	paired FLOAT NOT NULL, 
 	seen FLOAT NOT NULL
 , limited BOOLEAN DEFAULT 0 NOT NULL, ends FLOAT, page_secret VARCHAR, session_id INTEGER);
-CREATE UNIQUE INDEX device_secret ON device (secret);
-CREATE INDEX chunk_time ON chunk (session_id, topic, first_time, last_time, count);
-CREATE TABLE tuning_run (
+CREATE TABLE gap (
+	id INTEGER NOT NULL, 
+	session_id INTEGER NOT NULL, 
+	topic VARCHAR NOT NULL, 
+	kind VARCHAR NOT NULL, 
+	time FLOAT NOT NULL, 
+	missed INTEGER NOT NULL, 
+	PRIMARY KEY (id), 
+	FOREIGN KEY(session_id) REFERENCES session (id)
+);
+CREATE TABLE lab_robot (
 	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
 	name VARCHAR NOT NULL, 
-	kind VARCHAR NOT NULL, 
-	loop VARCHAR NOT NULL, 
-	started FLOAT NOT NULL, 
-	state VARCHAR NOT NULL, 
-	problem VARCHAR NOT NULL, 
-	settings VARCHAR NOT NULL, 
+	url VARCHAR NOT NULL, 
+	token VARCHAR NOT NULL, 
+	certificate VARCHAR NOT NULL, 
+	added FLOAT NOT NULL, 
+	CONSTRAINT lab_robot_name UNIQUE (name)
+);
+CREATE TABLE "layout" (
+	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+	name VARCHAR NOT NULL, 
+	saved FLOAT NOT NULL, 
+	document VARCHAR NOT NULL, 
+	author VARCHAR DEFAULT '' NOT NULL, 
+	version INTEGER DEFAULT '1' NOT NULL, 
+	CONSTRAINT layout_name UNIQUE (name)
+);
+CREATE TABLE "marker" (
+	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+	session_id INTEGER NOT NULL, 
+	time FLOAT NOT NULL, 
+	text VARCHAR NOT NULL, 
+	made FLOAT NOT NULL, 
+	FOREIGN KEY(session_id) REFERENCES session (id)
+);
+CREATE TABLE "parameter_change" (
+	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+	time FLOAT NOT NULL, 
+	run VARCHAR NOT NULL, 
+	who VARCHAR NOT NULL, 
+	why VARCHAR NOT NULL, 
+	changed VARCHAR NOT NULL, 
+	undone VARCHAR NOT NULL
+);
+CREATE TABLE "profile" (
+	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+	name VARCHAR NOT NULL, 
+	note VARCHAR NOT NULL, 
+	saved FLOAT NOT NULL, 
 	parameters VARCHAR NOT NULL, 
+	author VARCHAR DEFAULT '' NOT NULL, 
+	CONSTRAINT profile_name UNIQUE (name)
+);
+CREATE TABLE pulled_session (
+	identifier VARCHAR NOT NULL, 
+	robot VARCHAR NOT NULL, 
+	pulled FLOAT NOT NULL, 
+	PRIMARY KEY (identifier)
+);
+CREATE TABLE run_figures (
+	"key" VARCHAR NOT NULL, 
+	firmware VARCHAR NOT NULL, 
+	software VARCHAR NOT NULL, 
+	simulated FLOAT NOT NULL, 
+	seconds FLOAT NOT NULL, 
+	problem VARCHAR NOT NULL, 
 	figures VARCHAR NOT NULL, 
-	curve BLOB NOT NULL
+	words VARCHAR NOT NULL, 
+	PRIMARY KEY ("key")
 );
 CREATE TABLE "session" (
 	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
@@ -114,65 +168,36 @@ CREATE TABLE "session" (
 	kept BOOLEAN DEFAULT '0' NOT NULL, 
 	deleted FLOAT
 , archived FLOAT);
-CREATE INDEX ix_session_state ON session (state);
-CREATE UNIQUE INDEX session_identifier ON session (identifier);
-CREATE TABLE "marker" (
-	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
+CREATE TABLE session_figures (
 	session_id INTEGER NOT NULL, 
-	time FLOAT NOT NULL, 
-	text VARCHAR NOT NULL, 
-	made FLOAT NOT NULL, 
+	segment INTEGER NOT NULL, 
+	controller VARCHAR NOT NULL, 
+	gains VARCHAR NOT NULL, 
+	craft VARCHAR NOT NULL, 
+	duration FLOAT, 
+	deepest FLOAT, 
+	rmse FLOAT, 
+	cycle_amplitude FLOAT, 
+	overshoot FLOAT, 
+	settling_time FLOAT, 
+	fin_strokes FLOAT, 
+	frames_lost FLOAT, 
+	alarms FLOAT, 
+	PRIMARY KEY (session_id, segment), 
 	FOREIGN KEY(session_id) REFERENCES session (id)
-);
-CREATE INDEX ix_marker_session_id ON marker (session_id);
-CREATE TABLE "comm_test_run" (
-	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
-	name VARCHAR NOT NULL, 
-	document VARCHAR NOT NULL, 
-	framing VARCHAR NOT NULL, 
-	direction VARCHAR NOT NULL, 
-	cells INTEGER NOT NULL, 
-	firmware VARCHAR NOT NULL, 
-	tools VARCHAR NOT NULL, 
-	host VARCHAR NOT NULL, 
-	started FLOAT NOT NULL, 
-	ended FLOAT, 
-	state VARCHAR NOT NULL, 
-	problem VARCHAR NOT NULL, 
-	place VARCHAR DEFAULT 'emulated' NOT NULL, 
-	sample VARCHAR DEFAULT ('') NOT NULL
-);
-CREATE TABLE "parameter_change" (
-	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
-	time FLOAT NOT NULL, 
-	run VARCHAR NOT NULL, 
-	who VARCHAR NOT NULL, 
-	why VARCHAR NOT NULL, 
-	changed VARCHAR NOT NULL, 
-	undone VARCHAR NOT NULL
-);
-CREATE TABLE "profile" (
-	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
-	name VARCHAR NOT NULL, 
-	note VARCHAR NOT NULL, 
-	saved FLOAT NOT NULL, 
-	parameters VARCHAR NOT NULL, 
-	author VARCHAR DEFAULT '' NOT NULL, 
-	CONSTRAINT profile_name UNIQUE (name)
-);
-CREATE TABLE "layout" (
-	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
-	name VARCHAR NOT NULL, 
-	saved FLOAT NOT NULL, 
-	document VARCHAR NOT NULL, 
-	author VARCHAR DEFAULT '' NOT NULL, 
-	version INTEGER DEFAULT '1' NOT NULL, 
-	CONSTRAINT layout_name UNIQUE (name)
 );
 CREATE TABLE session_summary (
 	session_id INTEGER NOT NULL, 
 	document VARCHAR NOT NULL, 
 	PRIMARY KEY (session_id), 
+	FOREIGN KEY(session_id) REFERENCES session (id)
+);
+CREATE TABLE session_tag (
+	id INTEGER NOT NULL, 
+	session_id INTEGER NOT NULL, 
+	tag VARCHAR NOT NULL, 
+	PRIMARY KEY (id), 
+	CONSTRAINT session_tag_place UNIQUE (session_id, tag), 
 	FOREIGN KEY(session_id) REFERENCES session (id)
 );
 CREATE TABLE sweep (
@@ -196,17 +221,6 @@ CREATE TABLE sweep (
 	started FLOAT, 
 	ended FLOAT
 );
-CREATE TABLE run_figures (
-	"key" VARCHAR NOT NULL, 
-	firmware VARCHAR NOT NULL, 
-	software VARCHAR NOT NULL, 
-	simulated FLOAT NOT NULL, 
-	seconds FLOAT NOT NULL, 
-	problem VARCHAR NOT NULL, 
-	figures VARCHAR NOT NULL, 
-	words VARCHAR NOT NULL, 
-	PRIMARY KEY ("key")
-);
 CREATE TABLE sweep_run (
 	id INTEGER NOT NULL, 
 	sweep_id INTEGER NOT NULL, 
@@ -220,38 +234,24 @@ CREATE TABLE sweep_run (
 	FOREIGN KEY(sweep_id) REFERENCES sweep (id), 
 	FOREIGN KEY("key") REFERENCES run_figures ("key")
 );
-CREATE INDEX ix_sweep_run_key ON sweep_run ("key");
-CREATE TABLE lab_robot (
+CREATE TABLE tuning_run (
 	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
 	name VARCHAR NOT NULL, 
-	url VARCHAR NOT NULL, 
-	token VARCHAR NOT NULL, 
-	certificate VARCHAR NOT NULL, 
-	added FLOAT NOT NULL, 
-	CONSTRAINT lab_robot_name UNIQUE (name)
+	kind VARCHAR NOT NULL, 
+	loop VARCHAR NOT NULL, 
+	started FLOAT NOT NULL, 
+	state VARCHAR NOT NULL, 
+	problem VARCHAR NOT NULL, 
+	settings VARCHAR NOT NULL, 
+	parameters VARCHAR NOT NULL, 
+	figures VARCHAR NOT NULL, 
+	curve BLOB NOT NULL
 );
-CREATE TABLE pulled_session (
-	identifier VARCHAR NOT NULL, 
-	robot VARCHAR NOT NULL, 
-	pulled FLOAT NOT NULL, 
-	PRIMARY KEY (identifier)
-);
-CREATE TABLE session_figures (
-	session_id INTEGER NOT NULL, 
-	segment INTEGER NOT NULL, 
-	controller VARCHAR NOT NULL, 
-	gains VARCHAR NOT NULL, 
-	craft VARCHAR NOT NULL, 
-	duration FLOAT, 
-	deepest FLOAT, 
-	rmse FLOAT, 
-	cycle_amplitude FLOAT, 
-	overshoot FLOAT, 
-	settling_time FLOAT, 
-	fin_strokes FLOAT, 
-	frames_lost FLOAT, 
-	alarms FLOAT, 
-	PRIMARY KEY (session_id, segment), 
-	FOREIGN KEY(session_id) REFERENCES session (id)
-);
+CREATE INDEX chunk_time ON chunk (session_id, topic, first_time, last_time, count);
+CREATE UNIQUE INDEX device_secret ON device (secret);
+CREATE INDEX ix_gap_session_id ON gap (session_id);
+CREATE INDEX ix_marker_session_id ON marker (session_id);
+CREATE INDEX ix_session_state ON session (state);
+CREATE INDEX ix_sweep_run_key ON sweep_run ("key");
+CREATE UNIQUE INDEX session_identifier ON session (identifier);
 INSERT INTO alembic_version VALUES ('0016');

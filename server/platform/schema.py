@@ -70,8 +70,9 @@ def write_schema() -> str:
         database = Path(folder) / "new.db"
         _upgrade(database)
         with closing(sqlite3.connect(database)) as connection:
+            # Alembic makes the indexes of a table in any order.
             made = connection.execute(
-                "SELECT sql FROM sqlite_master WHERE name NOT LIKE 'sqlite_%'"
+                "SELECT sql FROM sqlite_master WHERE name NOT LIKE 'sqlite_%' ORDER BY type = 'index', name"
             ).fetchall()
     tables = "".join(f"{text};\n" for (text,) in made)
     return f"-- Written by `make generate` from the migrations. Do not edit.\n{tables}{_REVISION}"

@@ -57,7 +57,7 @@ def test_a_new_database_is_what_the_migrations_make(settings: Settings) -> None:
             # A table that was made anew has a line that says that no number was given yet.
             assert not any(database.execute("SELECT seq FROM sqlite_sequence WHERE seq != 0"))
             assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
-            return [line for line in database.iterdump() if "sqlite_sequence" not in line]
+            return sorted(line for line in database.iterdump() if "sqlite_sequence" not in line)
 
     schema._upgrade(settings.data.database)
     migrated = dump()
