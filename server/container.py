@@ -69,6 +69,11 @@ class Container:
                 for end in reversed(ends):
                     ending.push_async_callback(end)
 
+    def warm_up(self) -> None:
+        """Prepare the services that are likely to be needed."""
+        for plug in self._plugs:
+            plug.warm_up()
+
     def _begin(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         """Begin a background task; its failure is logged and raises an alarm."""
         task = asyncio.create_task(work, name=getattr(work, "__qualname__", None))

@@ -67,6 +67,9 @@ class Plug:
         """Return the background work that lasts as long as the server; its failure is an alarm."""
         return ()
 
+    def warm_up(self) -> None:
+        """Prepare data that is likely to be needed; the server serves already."""
+
     async def stop(self) -> None:
         """End the feature's work; the robot's processes still run, the background work has ended."""
 

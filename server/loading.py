@@ -20,6 +20,7 @@ def load(settings: Settings, certificate: Certificate | None) -> tuple[FastAPI, 
     """Make the application and its web server."""
 
     def started(container: Container) -> None:
+        container.warm_up()
         app.state.note_serving()
         ServiceManager().ready()
         if not app.state.ended:

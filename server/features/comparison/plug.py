@@ -11,7 +11,7 @@ from server.platform.settings import Settings
 
 
 class ComparisonPlug(Plug):
-    """The plug that has the process read what is new, and ends it with the server."""
+    """The plug that starts the process early where memory allows it, and has it read what is new."""
 
     def __init__(
         self, worker: ComparisonWorker, summaries: SummaryWorker, figures: FigureWorker, settings: Settings
@@ -19,6 +19,10 @@ class ComparisonPlug(Plug):
         self._figures = figures if settings.lab else None
         self._worker = worker
         self._summaries = summaries
+
+    def warm_up(self) -> None:
+        """Start the process."""
+        self._worker.prepare()
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
         """Make summaries of the sessions that have ended, and in a lab their figures."""

@@ -162,6 +162,24 @@ async def test_the_process_ends_when_nobody_asks_any_more(
         assert (await compare(served, session)).status_code == 200
 
 
+@pytest.mark.parametrize("roomy", [True, False])
+async def test_only_a_roomy_computer_has_the_process_before_anybody_asks_and_keeps_it(
+    settings: Settings, session: int, monkeypatch: pytest.MonkeyPatch, roomy: bool
+) -> None:
+    monkeypatch.setattr(worker, "IDLE_SECONDS", 0.01)
+    monkeypatch.setattr(worker, "ROOMY_BYTES", 0 if roomy else 10**18)
+    comparison = ComparisonWorker(settings.data)
+    comparison.prepare()
+    assert (comparison._preparing is not None) is roomy
+    if roomy:
+        await until(lambda: comparison._process is not None, "the process")
+    process = comparison._process
+    await comparison.ask("signals", str(session))
+    assert (comparison._process is process) is roomy
+    assert (comparison._idle is None) is roomy
+    await comparison.close()
+
+
 async def test_a_report_ends_with_the_connection_of_its_receiver(
     settings: Settings, session: int, python: Python, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
