@@ -60,7 +60,7 @@ class LocalWorkers:
         self.close()
         # Not forked: a process with threads cannot be.
         context = multiprocessing.get_context("spawn")
-        self._pool = ProcessPoolExecutor(self.count, context, start_worker)
+        self._pool = ProcessPoolExecutor(self.count, context, start_worker, (os.getpid(),))
         return self._pool
 
     def close(self) -> None:

@@ -58,9 +58,10 @@ direction = 1.0
 """
 
 
-def start_worker() -> None:
-    """Prepare a process of this computer for runs: niced, one thread, ended with its parent."""
-    end_with_parent()
+def start_worker(parent: int) -> None:
+    """Prepare a process of this computer for runs: niced, one thread, ended with its parent, this process."""
+    # Which may have ended while this one was loading.
+    end_with_parent(parent)
     settle_worker()
 
 

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import closing
@@ -187,3 +189,9 @@ def test_a_killed_process_loses_nothing_and_bits_are_those_of_this_process() -> 
     assert {result.outcome.key: without_seconds(result.outcome) for result in results} == expected
     # Other gains and other seeds swim otherwise.
     assert len({str(outcome[3]) for outcome in expected.values()}) == 8
+
+
+def test_a_worker_whose_sweep_has_ended_meanwhile_ends() -> None:
+    program = "from server.features.sweeps.simulation import start_worker; start_worker(1); print('computes')"
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert ended.stdout == ""
