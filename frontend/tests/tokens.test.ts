@@ -91,7 +91,7 @@ const stylesOf = (file: string) =>
 const files = readdirSync(SOURCES, { recursive: true, encoding: 'utf8' }).filter((file) => !file.startsWith('generated') && file !== 'styles/tokens.css');
 
 /** Widths of the window (px) at which something changes: at most the first, at least the second. */
-const WIDTHS = ['max-width: 479px', 'max-width: 899px', 'min-width: 900px', 'max-width: 1099px', 'max-width: 1719px', 'max-width: 2199px'];
+const WIDTHS = ['max-width: 389px', 'max-width: 479px', 'max-width: 899px', 'min-width: 900px', 'max-width: 1099px', 'max-width: 1719px', 'max-width: 2199px'];
 /** Of what stands within a thing, and between things; a negative margin takes back what another rule gives. */
 const ROOM = /(?:^|[\s;{"])(?:padding|margin|gap|row-gap|column-gap)(?:-[a-z]+)?: [^;}]*?(?<![-\w.])[\d.]+(?:px|rem)[^;}]*/g;
 
