@@ -242,6 +242,8 @@ export const system = {
   },
   lab: {
     title: 'Robots',
+    nameHint: 'turtle-1',
+    urlHint: 'https://turtle-1.local:8000',
     about: 'The lab fetches their sessions whenever they are disarmed and reachable.',
     phases: { waiting: 'waiting', pulling: 'fetching', done: 'up to date', armed: 'armed', unreachable: 'not reached', failed: 'failed' },
     lacking: (count: number) => (count === 1 ? '1 session is missing here.' : `${count} sessions are missing here.`),
