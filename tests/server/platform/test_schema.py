@@ -258,8 +258,6 @@ INNER = {
     "session_summary",
     "comm_test_cell",
     "alembic_version",
-    "sweep_run",
-    "run_figures",
 }
 """Tables whose numbers nobody outside the database knows."""
 
