@@ -85,6 +85,7 @@ class _Watcher:
             max_size=None,
             proxy=None,
         )
+        self._socket.__enter__()
         self._socket.send(json.dumps({"op": "watch", "pictures": [CAMERA.name]}))
         self._thread = threading.Thread(target=self._read, daemon=True)
         self._thread.start()
@@ -96,7 +97,7 @@ class _Watcher:
     def end(self) -> list[tuple[float, float, bytes]]:
         """Disconnect; return the arrival (s), the time (s) and the JPEG file of each picture."""
         pictures = self._pictures
-        self._socket.close()
+        self._socket.__exit__(None, None, None)
         self._thread.join()
         return pictures
 

@@ -32,13 +32,14 @@ class LiveViewer:
         self._thread = threading.Thread(target=self._read, daemon=True)
 
     def __enter__(self) -> Self:
+        self._socket.__enter__()
         self._thread.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._socket.close()
+        self._socket.__exit__(kind, value, trace)
         self._thread.join()
 
     def _read(self) -> None:
