@@ -26,6 +26,7 @@ UNCHANGING = frozenset(
     {
         "checkTestDocument",
         "checkScenario",
+        "checkSweep",
         "checkMission",
         "compareSessions",
         "compareLines",

@@ -222,6 +222,7 @@ READ_THEIR_OWN = {
     "robot_runtime/generate/markdown.py",
     "robot_runtime/missions/library.py",
     "server/features/backup/command.py",
+    "server/features/bench/live_viewer.py",
     "server/features/bench/measurement.py",
     "server/features/bench/process_figures.py",
     "server/features/bench/report.py",
@@ -239,7 +240,9 @@ READ_THEIR_OWN = {
     "server/features/installation/report.py",
     "server/features/installation/units/__init__.py",
     "server/features/installation/updater.py",
+    "server/features/lab/robot_client.py",
     "server/features/panels/frame.py",
+    "server/features/roster/roster.py",
     "server/features/scenarios/live_setup.py",
     "server/features/sweeps/runner.py",
     "server/http/help_pages.py",
@@ -251,6 +254,8 @@ READ_THEIR_OWN = {
     "server/platform/pidfile.py",
     "server/platform/report_page.py",
     "server/platform/running_server.py",
+    "server/platform/schema.py",
+    "server/platform/settings.py",
     "server/platform/supply_voltage.py",
 }
 """Modules that read what this program, its release or the system has written, not what people hand over."""

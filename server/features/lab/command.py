@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from robot_runtime.contract.text_input import TextError, load_text
 from server.platform.command_line import FILE, with_settings
 from server.platform.running_server import ask
 from server.platform.settings import Settings, SetupError
@@ -27,9 +28,11 @@ def add_robot(settings: Settings, name: str, url: str, certificate: Path | None)
     """
     token = click.prompt("Token of the robot", hide_input=True)
     try:
-        text = "" if certificate is None else certificate.read_text(encoding="ascii")
-    except (OSError, UnicodeError) as problem:
+        text = "" if certificate is None else load_text(certificate)
+    except OSError as problem:
         raise SetupError(f"{certificate} cannot be read: {problem}.") from problem
+    except TextError as problem:
+        raise SetupError(f"{certificate} cannot be read: it {problem}.") from problem
     robot = {"name": name, "url": url, "token": token, "certificate": text}
     ask(settings.data, "POST", "/lab/robots", robot)
     echo(f"The lab pulls from {name} whenever it is disarmed and reachable.")

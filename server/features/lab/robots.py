@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from time import time
 
-from sqlalchemy import Connection, delete
+from sqlalchemy import Connection, delete, func
 from sqlmodel import col, select
 
 from server.features.lab.schemas import NewLabRobot
@@ -11,13 +11,15 @@ from server.platform.errors import ConflictError, NotFoundError
 from server.platform.models import LabRobotRow
 from server.platform.store import Store, insert_row
 
+ROBOTS_MAX = 100
+
 
 class UnknownRobotError(NotFoundError):
     """There is no such robot"""
 
 
 class RobotKnownError(ConflictError):
-    """A robot has this name"""
+    """A robot has this name, or there are too many"""
 
 
 class LabRobots:
@@ -36,6 +38,8 @@ class LabRobots:
 
         def write(connection: Connection) -> int:
             same = select(LabRobotRow.id).where(LabRobotRow.name == robot.name)
+            if connection.execute(select(func.count()).select_from(LabRobotRow)).scalar_one() >= ROBOTS_MAX:
+                raise RobotKnownError(f"The lab knows {ROBOTS_MAX} robots. Remove one that is gone.")
             if connection.execute(same).first() is not None:
                 raise RobotKnownError(f"The lab knows a robot “{robot.name}” already. Remove that one first.")
             return insert_row(connection, LabRobotRow, {**robot.model_dump(), "added": time()})

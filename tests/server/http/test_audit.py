@@ -57,7 +57,7 @@ def test_what_only_looks_is_in_no_log(settings: Settings) -> None:
         for context in iter_route_contexts([*create_app(replace(settings, every_feature=True)).routes])
         if need_of(context) is Need.VIEWER and not (context.methods or set()) <= SAFE_METHODS
     }
-    assert asked - UNCHANGING == {"signOut", "startExport", "stopRobot"}
+    assert asked - UNCHANGING == {"signOut", "startExport", "stopRobot", "stopAllRobots"}
 
 
 async def test_sign_in_refusals_roles_arm_and_stop_are_written_with_who_and_where(settings: Settings) -> None:

@@ -22,10 +22,14 @@ from server.app import create_app
 from server.driving.changes import SHOWN
 from server.driving.profiles import PARAMETERS_MAX, PROFILES_MAX
 from server.features.comm_tests.runs import LISTED_MOST as TESTS_LISTED
+from server.features.comparison.figure_query import BEST_SHOWN, BINS, PERIODS_MAX
+from server.features.comparison.figure_query import GROUPS_MAX as GROUPS_TOLD_APART
 from server.features.doors.house import CLIENTS_MAX
 from server.features.doors.subscriptions import SUBSCRIPTIONS_MAX
 from server.features.exports.archive_models import COLUMNS_MAX, TAGS_MAX, TOPICS_MAX
 from server.features.exports.jobs import JOBS_MAX
+from server.features.lab.pull import PROBLEMS_SHOWN
+from server.features.lab.robots import ROBOTS_MAX as LAB_ROBOTS_MAX
 from server.features.layouts.library import LAYOUTS_MOST
 from server.features.missions.library import MISSIONS_MAX, VERSIONS_MAX
 from server.features.missions.past_runs import RUNS_MAX
@@ -59,9 +63,17 @@ LIMITS = {
     "/api/doors clients": CLIENTS_MAX,
     "/api/doors clients topics": SUBSCRIPTIONS_MAX,
     "/api/exports": JOBS_MAX,
+    "/api/figures course": PERIODS_MAX,
+    "/api/figures edges": BINS + 1,
+    "/api/figures greatest": BEST_SHOWN,
+    "/api/figures groups": GROUPS_TOLD_APART + 1,
+    "/api/figures groups bins": BINS,
+    "/api/figures least": BEST_SHOWN,
     "/api/identification active sessions": SESSIONS_MAX,
     "/api/identification last result sessions": SESSIONS_MAX,
     "/api/identification last sessions": SESSIONS_MAX,
+    "/api/lab/robots": LAB_ROBOTS_MAX,
+    "/api/lab/robots problems": PROBLEMS_SHOWN,
     "/api/layouts": LAYOUTS_MOST,
     "/api/missions": MISSIONS_MAX,
     "/api/missions summary steps": NODES_MAX,

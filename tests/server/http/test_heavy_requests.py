@@ -67,6 +67,7 @@ def test_reports_checks_replays_and_comparisons_take_turns(settings: Settings) -
         *("getFilm", "getFilmPart"),
         *("checkSweep", "startSweep", "getSweep", "listSweepRuns", "downloadSweepTable"),
         "predictStep",
+        "getFigureStudy",
     }
 
 

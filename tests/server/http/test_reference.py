@@ -57,6 +57,7 @@ def test_the_check_fails_where_an_operation_is_missing(
 ) -> None:
     shutil.copy(openapi.SOURCES / "robot.toml", tmp_path)
     (tmp_path / "docs/reference").mkdir(parents=True)
+    (tmp_path / "migrations").mkdir()
     reference = tmp_path / "docs/reference/http.md"
     monkeypatch.setattr(openapi, "SOURCES", tmp_path)
     monkeypatch.setattr(sys, "argv", ["openapi", "--reference"])

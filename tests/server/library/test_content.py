@@ -1,10 +1,12 @@
 import asyncio
+from typing import Any
 
 import pytest
-from sqlalchemy import text
+from sqlalchemy import update
 
 from robot_runtime.contract.chunks import decode_pictures, encode_pictures
 from server.library.content import CHUNKS_AT_ONCE, Recording, RecordingError
+from server.platform.models import Chunk
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.session import find_row
@@ -85,15 +87,15 @@ def test_changes_are_documents_that_differ_from_the_one_before(store: Store, set
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ("data = ''", "is damaged"),
-        ("encoding = 'other'", "is of another version: it is encoded as 'other'"),
+        ({"data": b""}, "is damaged"),
+        ({"encoding": "other"}, "is of another version: it is encoded as 'other'"),
     ],
 )
 def test_an_unreadable_recording_is_reported(
-    store: Store, settings: Settings, change: str, message: str
+    store: Store, settings: Settings, change: dict[str, Any], message: str
 ) -> None:
     recording = read(store, record(store, settings, [depth_block(0, 5), state_block(0)]))
-    asyncio.run(store.write(lambda connection: connection.execute(text(f"UPDATE chunk SET {change}"))))
+    asyncio.run(store.execute(update(Chunk).values(change)))
     with pytest.raises(RecordingError, match=f"chunk 0 of depth {message}"):
         recording.columns("depth", ["depth"])
     with pytest.raises(RecordingError, match=f"chunk 0 of state {message}"):

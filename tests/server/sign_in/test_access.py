@@ -43,6 +43,7 @@ async def test_every_operation_needs_a_sign_in(served: Served) -> None:
             "pairing_open": False,
             "operators_only": [],
             "ends": None,
+            "lab": False,
         }
 
 

@@ -25,7 +25,7 @@ from tests.server.waiting import until
 
 OWN = "/api/sessions/{session}"
 GIVEN = dict.fromkeys(
-    ("run", "device", "layout", "profile", "panel", "mark", "name", "link", "note", "export"), "999"
+    ("run", "device", "layout", "profile", "panel", "mark", "name", "link", "note", "export", "sweep"), "999"
 )
 
 

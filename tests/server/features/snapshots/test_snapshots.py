@@ -112,5 +112,5 @@ async def test_a_full_disk_is_named(served: Served, monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(served.get(Recorder), "flush", refuse)
     status, answer = await take(served)
-    assert status == 503
+    assert status == 507
     assert "the disk is full" in answer["detail"]
