@@ -23,7 +23,6 @@ EXTRAS = (
     ("identify", "scipy"),
     ("lab", "distributed"),
     ("ros2", "rosbags"),
-    ("lab", "psycopg"),
 )
 """Extras of mucat, each with the package that shows that a robot has it, or is to have it."""
 WHEELS = "wheels"
