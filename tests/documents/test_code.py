@@ -37,12 +37,24 @@ DASK = (
     "dask scheduler --protocol tls --port 8786 --tls-ca-file ca.pem --tls-cert certificate.pem "
     "--tls-key key.pem"
 )
+LAB_ADD = (
+    "mucat lab add turtle-1 https://turtle-1.local:8000 --certificate certificate.pem --data /srv/mucat-lab"
+)
 UNRUN = {
     ("../README.md", "pip install -c constraints.txt ./mucat-*.whl ./mucat_emulator-*_$(uname -m).whl"): (
         "it installs into the system; tests/packages installs the same wheels"
     ),
     ("develop/add-a-topic.md", "self.bus.publish_document(SAY, event)"): "a line of a method",
     ("run/computers.md", "mucat bench"): "a minute beside a robot; tests/server/features/bench measures one",
+    (
+        "run/lab.md",
+        "mucat lab run --data /srv/mucat-lab",
+    ): "it does not end; tests/server/features/lab serves one",
+    ("run/lab.md", LAB_ADD): "a robot; tests/server/features/lab adds and pulls from one",
+    ("run/lab.md", "mucat lab lake lake --topics control depth --data /srv/mucat-lab"): (
+        "an archive; tests/server/features/exports/test_lake.py makes one"
+    ),
+    ("run/lab.md", "pip install mucat[lab]"): "the internet; tests/server/postgres.py has a server",
     ("run/packages.md", "python3 -m venv mucat"): "tests/packages does the same with the wheels",
     ("run/packages.md", "sudo apt install python3-venv python3-picamera2 avrdude"): "a Raspberry Pi",
     ("run/packages.md", PI_32_BITS): "a Raspberry Pi of 32 bits",
