@@ -49,7 +49,7 @@ UNRUN = {
     (
         "run/lab.md",
         "mucat lab run --data /srv/mucat-lab",
-    ): "it does not end; tests/server/features/lab serves one",
+    ): "tests/server/features/lab serves one",
     ("run/lab.md", LAB_ADD): "a robot; tests/server/features/lab adds and pulls from one",
     ("run/lab.md", "mucat lab lake lake --topics control depth --data /srv/mucat-lab"): (
         "an archive; tests/server/features/exports/test_lake.py makes one"
