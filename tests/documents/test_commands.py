@@ -35,7 +35,7 @@ AFTER_IT = (
 # Those of docs/run/packages.md are run by tests/packages and, in other systems, by `make packages`.
 WITH_A_SERVER = ("run/access.md", "use/doors.md")
 RUN_ELSEWHERE = {
-    "run/lab.md": "tests/server/features/lab pulls, exports/test_lake.py writes, tests/server/postgres.py serves",
+    "run/lab.md": "tests/server/features/lab, and tests/server/features/exports/test_lake.py",
     "use/sweeps.md": "tests/server/features/sweeps has a scheduler and workers",
 }
 """Pages whose commands need other computers, and what does the same."""
