@@ -17,12 +17,14 @@ class ComparisonPlug(Plug):
         self, worker: ComparisonWorker, summaries: SummaryWorker, figures: FigureWorker, settings: Settings
     ) -> None:
         self._figures = figures if settings.lab else None
+        self._is_lean = settings.robot.profile == "lean"
         self._worker = worker
         self._summaries = summaries
 
     def warm_up(self) -> None:
-        """Start the process."""
-        self._worker.prepare()
+        """Start the process; where processor time is scarce, only when somebody asks."""
+        if not self._is_lean:
+            self._worker.prepare()
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
         """Make summaries of the sessions that have ended, and in a lab their figures."""

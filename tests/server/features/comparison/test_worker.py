@@ -6,17 +6,20 @@ import signal
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import httpx
 import pytest
 
+from robot_runtime.profile import Profile
 from server.analysis import report
 from server.analysis.comparer import Comparer
 from server.analysis.schemas import ComparisonQuery, LinesQuery
 from server.features.comparison import worker
+from server.features.comparison.plug import ComparisonPlug
 from server.features.comparison.worker import ComparisonError, ComparisonWorker
 from server.platform.settings import Settings
 from server.platform.store import Reader
@@ -178,6 +181,19 @@ async def test_only_a_roomy_computer_has_the_process_before_anybody_asks_and_kee
     assert (comparison._process is process) is roomy
     assert (comparison._idle is None) is roomy
     await comparison.close()
+
+
+@pytest.mark.parametrize("profile", ["full", "lean"])
+def test_where_processor_time_is_scarce_it_starts_only_when_somebody_asks(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch, profile: Profile
+) -> None:
+    prepared: list[ComparisonWorker] = []
+    monkeypatch.setattr(ComparisonWorker, "prepare", prepared.append)
+    here = replace(settings, robot=replace(settings.robot, profile=profile))
+    comparison = ComparisonWorker(here.data)
+    unused = cast(Any, None)
+    ComparisonPlug(comparison, unused, unused, here).warm_up()
+    assert prepared == ([comparison] if profile == "full" else [])
 
 
 async def test_a_report_ends_with_the_connection_of_its_receiver(
