@@ -188,7 +188,7 @@ def test_where_processor_time_is_scarce_it_starts_only_when_somebody_asks(
     settings: Settings, monkeypatch: pytest.MonkeyPatch, profile: Profile
 ) -> None:
     prepared: list[ComparisonWorker] = []
-    monkeypatch.setattr(ComparisonWorker, "prepare", prepared.append)
+    monkeypatch.setattr(ComparisonWorker, "prepare", lambda self: prepared.append(self))
     here = replace(settings, robot=replace(settings.robot, profile=profile))
     comparison = ComparisonWorker(here.data)
     unused = cast(Any, None)
