@@ -105,6 +105,7 @@ LIMITS = {
     "/api/sessions tags": TAGS_MAX,
     "/api/sessions/controllers": TAGS_SHOWN,
     "/api/sessions/groups": GROUPS_MAX,
+    "/api/sessions/robots": TAGS_SHOWN,
     "/api/sessions/{session} summary cards": NAMES_MAX,
     "/api/sessions/{session} summary controllers": NAMES_MAX,
     "/api/sessions/{session} summary curve": CURVE_POINTS,
