@@ -30,7 +30,7 @@ def test_a_link_shows_its_session_to_who_is_not_signed_in_until_it_is_ended(
         # A flag of the dive may have these letters in it, too: "robot.toml was edited".
         expect(reader.get_by_role("button", name=re.compile("^Edit"))).to_have_count(0)
         expect(reader.get_by_role("button", name="STOP")).to_have_count(0)
-        reader.get_by_role("link", name="Replay").click()
+        reader.get_by_role("link", name="Replay", exact=True).click()
         expect(reader.get_by_role("heading", name=re.compile("^Replay"))).to_be_visible()
         reader.goto(f"{site.url}/#/sessions")
         expect(reader.get_by_role("heading", name="Not in this link")).to_be_visible()
