@@ -44,7 +44,7 @@ _MINUTE = round(60 * RATE)
 """Pictures."""
 _SEEKS = 100
 _GIVEN_UP_MS = 10_000
-"""From which on a seek has failed: the film stands at another picture."""
+"""Time limit of one seek."""
 
 
 def measure() -> dict[str, float]:

@@ -19,9 +19,9 @@ from robot_runtime.transport.network import (
 ROBOTS = "robots"
 """Folder of the robots' certificates that are in force, in a lab's folder of certificates."""
 PRESENCE, ALIVE = "presence", "alive"
-"""What a robot sends: its presence once a second, and a liveliness token."""
+"""Keys of a robot's presence, sent once a second, and of its liveliness token."""
 STOP, CLOCK = "lab/stop", "lab/clock"
-"""The questions that it answers."""
+"""Keys of the questions that a robot answers."""
 _LEASE_MS = 2000
 """A silent peer counts as gone after this time; Zenoh's own default is 10 s."""
 _LEASE: Mapping[str, Any] = {"transport/link/tx/lease": _LEASE_MS}

@@ -1,13 +1,12 @@
 """A whole server in a thread; in place of a robot, `bench.dive` sends it samples of one that floats."""
 
 import asyncio
-import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from math import inf
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from bench.dive import Dive
 from robot_runtime.clock import Clock, SteadyClock
@@ -17,13 +16,11 @@ from server.http.sign_in.access import Access
 from server.http.sign_in.confirmation import Confirmations
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
-from tests.control import Commander
+from tests.pages.threaded_site import ThreadedSite
 from tests.server.blocks import snapshot_block
 from tests.server.new_database import new_store
 from tests.server.runtime_end import RuntimeEnd
 from tests.server.serving import serve
-from tests.server.waiting import SECONDS
-from tests.shell import ShellAuth
 from tests.stack import ROOT
 
 FLOAT_SECONDS = 1800.0
@@ -47,8 +44,8 @@ def recorded_site(data: Path, record_all: Callable[[Store, Settings], object]) -
         yield site
 
 
-class DiveSite:
-    """A server with its page, on a port of the system's choice; leaving the context ends it.
+class DiveSite(ThreadedSite):
+    """A whole server with its page.
 
     Blocks are `period` s apart; `more` gives further ones that are due now (s, steady clock).
     """
@@ -61,22 +58,11 @@ class DiveSite:
         period: float = PERIOD,
         more: Callable[[float], Iterable[Block]] = lambda _: (),
     ) -> None:
-        self.data = data
+        super().__init__(data)
         self._period, self._more = period, more
         self._doors = doors or DoorsConfig()
-        self.port = 0
-        self._started = threading.Event()
-        self._end = threading.Event()
-        self._problem: BaseException | None = None
         self._runtime: RuntimeEnd | None = None
         self._access: Access | None = None
-        self._thread = threading.Thread(target=self._run, daemon=True)
-        self.api = Commander(timeout=SECONDS, auth=ShellAuth(DataFolder(data)))
-
-    @property
-    def url(self) -> str:
-        """The address of the page."""
-        return f"http://127.0.0.1:{self.port}"
 
     @property
     def first(self) -> str:
@@ -111,29 +97,6 @@ class DiveSite:
         before = self._runtime.snapshot
         number = 0 if before is None else before.following
         self._runtime.snapshot = snapshot_block(number, SteadyClock().now(), jpeg)
-
-    def __enter__(self) -> Self:
-        self._thread.start()
-        assert self._started.wait(SECONDS), "the server does not start"
-        if self._problem is not None:
-            raise self._problem
-        self.api.base_url = f"{self.url}/api"
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.api.close()
-        self._end.set()
-        self._thread.join(SECONDS)
-        assert not self._thread.is_alive(), "the server does not end"
-        if self._problem is not None:
-            raise self._problem
-
-    def _run(self) -> None:
-        try:
-            asyncio.run(self._serve())
-        except BaseException as problem:
-            self._problem = problem
-            self._started.set()
 
     async def _serve(self) -> None:
         folder, clock = DataFolder(self.data), SteadyClock()

@@ -1,73 +1,35 @@
 """A lab's server in a thread, with robots that only say how they are."""
 
 import asyncio
-import threading
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Self
 
 from server.interchange.presence import Presence
 from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder, Settings, make_folders
-from tests.control import Commander
+from tests.pages.threaded_site import ThreadedSite
 from tests.server.features.roster.lab_router import LabRouter, RobotEnd
 from tests.server.features.roster.served_lab import serve_lab
-from tests.server.waiting import SECONDS
-from tests.shell import ShellAuth
 from tests.stack import free_port
 
 PERIOD = 0.2
 """s between two presences: a test need not wait for a second."""
 
 
-class LabSite:
+class LabSite(ThreadedSite):
     """A lab with a robot for each of `present`, and others that are away; its page has no TLS."""
 
     def __init__(self, folder: Path, present: dict[str, Presence], absent: tuple[str, ...] = ()) -> None:
-        self.data = folder / "lab"
-        self.port = 0
-        self.api = Commander(timeout=SECONDS, auth=ShellAuth(DataFolder(self.data)))
+        super().__init__(folder / "lab")
         self.ends: dict[str, RobotEnd] = {}
         self._folder = folder
         self._present = present
         self._names = (*present, *absent)
-        self._started = threading.Event()
-        self._end = threading.Event()
-        self._problem: BaseException | None = None
-        self._thread = threading.Thread(target=self._run, daemon=True)
-
-    @property
-    def url(self) -> str:
-        """The address of the page."""
-        return f"http://127.0.0.1:{self.port}"
 
     @property
     def first(self) -> str:
         """The page of the robots."""
         return f"{self.url}/#/robots"
-
-    def __enter__(self) -> Self:
-        self._thread.start()
-        assert self._started.wait(SECONDS), "the lab does not start"
-        if self._problem is not None:
-            raise self._problem
-        self.api.base_url = f"{self.url}/api"
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.api.close()
-        self._end.set()
-        self._thread.join(SECONDS)
-        assert not self._thread.is_alive(), "the lab does not end"
-        if self._problem is not None:
-            raise self._problem
-
-    def _run(self) -> None:
-        try:
-            asyncio.run(self._serve())
-        except BaseException as problem:
-            self._problem = problem
-            self._started.set()
 
     async def _serve(self) -> None:
         data, port = DataFolder(self.data), free_port()

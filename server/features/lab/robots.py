@@ -9,9 +9,8 @@ from sqlmodel import col, select
 from server.features.lab.schemas import NewLabRobot
 from server.platform.errors import ConflictError, NotFoundError
 from server.platform.models import LabRobotRow
+from server.platform.paired_robots import ROBOTS_MAX, TooManyRobotsError
 from server.platform.store import Store, insert_row
-
-ROBOTS_MAX = 100
 
 
 class UnknownRobotError(NotFoundError):
@@ -34,12 +33,12 @@ class LabRobots:
             return database.exec(select(LabRobotRow).order_by(LabRobotRow.name)).all()
 
     async def add(self, robot: NewLabRobot) -> int:
-        """Add a robot; return its number. Raise RobotKnownError."""
+        """Add a robot; return its number. Raise RobotKnownError, TooManyRobotsError."""
 
         def write(connection: Connection) -> int:
             same = select(LabRobotRow.id).where(LabRobotRow.name == robot.name)
             if connection.execute(select(func.count()).select_from(LabRobotRow)).scalar_one() >= ROBOTS_MAX:
-                raise RobotKnownError(f"The lab knows {ROBOTS_MAX} robots. Remove one that is gone.")
+                raise TooManyRobotsError
             if connection.execute(same).first() is not None:
                 raise RobotKnownError(f"The lab knows a robot “{robot.name}” already. Remove that one first.")
             return insert_row(connection, LabRobotRow, {**robot.model_dump(), "added": time()})

@@ -29,7 +29,6 @@ from server.features.doors.subscriptions import SUBSCRIPTIONS_MAX
 from server.features.exports.archive_models import COLUMNS_MAX, TAGS_MAX, TOPICS_MAX
 from server.features.exports.jobs import JOBS_MAX
 from server.features.lab.pull import PROBLEMS_SHOWN
-from server.features.lab.robots import ROBOTS_MAX as LAB_ROBOTS_MAX
 from server.features.layouts.library import LAYOUTS_MOST
 from server.features.missions.library import MISSIONS_MAX, VERSIONS_MAX
 from server.features.missions.past_runs import RUNS_MAX
@@ -72,7 +71,7 @@ LIMITS = {
     "/api/identification active sessions": SESSIONS_MAX,
     "/api/identification last result sessions": SESSIONS_MAX,
     "/api/identification last sessions": SESSIONS_MAX,
-    "/api/lab/robots": LAB_ROBOTS_MAX,
+    "/api/lab/robots": ROBOTS_MAX,
     "/api/lab/robots problems": PROBLEMS_SHOWN,
     "/api/layouts": LAYOUTS_MOST,
     "/api/missions": MISSIONS_MAX,
