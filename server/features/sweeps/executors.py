@@ -16,6 +16,7 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     wait,
 )
+from math import isfinite
 from typing import Protocol
 
 from server.features.sweeps.run_task import RunOutcome, RunTask
@@ -143,6 +144,13 @@ def _check(task: RunTask, outcome: object) -> RunOutcome:
     """Return an outcome that is one of this task. Raise ValueError for what a wrong worker may send."""
     if not isinstance(outcome, RunOutcome) or outcome.key != task.key:
         raise ValueError("the worker sent the figures of another run")
+    values = [value for value in outcome.figures.values() if value is not None]
+    if not all(isfinite(value) for value in (outcome.simulated, outcome.seconds, *values)):
+        raise ValueError("the worker sent figures that are no numbers")
+    if not all(
+        isinstance(text, str) for text in (outcome.problem, *outcome.words.values(), *outcome.figures)
+    ):
+        raise ValueError("the worker sent reasons that are no texts")
     return outcome
 
 

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import closing
+from dataclasses import replace
+from math import nan
 from typing import Any
 
 import pytest
@@ -126,20 +128,30 @@ def test_a_run_that_always_ends_its_process_is_named_and_the_others_go_on(
     assert len(results) == 8
 
 
-def test_what_a_worker_sends_of_another_run_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+WRONG: dict[str, dict[str, Any]] = {
+    "ValueError: the worker sent the figures of another run": {"key": "other"},
+    "ValueError: the worker sent figures that are no numbers": {"figures": {"rmse": nan}},
+    "TypeError: must be real number, not str": {"figures": {"rmse": "0.1"}},
+    "ValueError: the worker sent reasons that are no texts": {"words": {"rmse": 1}},
+}
+
+
+@pytest.mark.parametrize("problem", WRONG)
+def test_what_no_worker_would_send_is_refused(problem: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    wrong = tasks_of(read())[2][1].key
+
     def submit(_self: _Inline, _function: object, task: RunTask, /) -> Future[RunOutcome]:
         future: Future[RunOutcome] = Future()
-        outcome = _quick(task)
-        future.set_result(
-            RunOutcome(key="other", problem="", simulated=1, seconds=1, figures=outcome.figures, words={})
-        )
+        future.set_result(replace(_quick(task), **(WRONG[problem] if task.key == wrong else {})))
         return future
 
     monkeypatch.setattr(_Inline, "submit", submit)
     results = perform(EIGHT, InlineWorkers())
-    assert {result.outcome.problem for result in results} == {
-        "ValueError: the worker sent the figures of another run"
-    }
+    failed = [result.outcome for result in results if result.outcome.problem]
+    assert [(outcome.key, outcome.problem, outcome.lasting) for outcome in failed] == [
+        (wrong, problem, False)
+    ]
+    assert len(results) == 8
 
 
 SEARCH = f"""{HEAD}seeds = 2
