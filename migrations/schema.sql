@@ -79,15 +79,6 @@ CREATE TABLE gap (
 	PRIMARY KEY (id), 
 	FOREIGN KEY(session_id) REFERENCES session (id)
 );
-CREATE TABLE lab_robot (
-	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
-	name VARCHAR NOT NULL, 
-	url VARCHAR NOT NULL, 
-	token VARCHAR NOT NULL, 
-	certificate VARCHAR NOT NULL, 
-	added FLOAT NOT NULL, 
-	CONSTRAINT lab_robot_name UNIQUE (name)
-);
 CREATE TABLE "layout" (
 	id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, 
 	name VARCHAR NOT NULL, 
@@ -254,4 +245,4 @@ CREATE INDEX ix_marker_session_id ON marker (session_id);
 CREATE INDEX ix_session_state ON session (state);
 CREATE INDEX ix_sweep_run_key ON sweep_run ("key");
 CREATE UNIQUE INDEX session_identifier ON session (identifier);
-INSERT INTO alembic_version VALUES ('0016');
+INSERT INTO alembic_version VALUES ('0017');

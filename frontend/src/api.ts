@@ -114,6 +114,7 @@ export const api = {
     download(server.GET('/api/audit/csv', { params: { query: { ...query, spreadsheet: ownSpreadsheet() } }, parseAs: 'stream', fetch: within(null) })),
 
   roster: () => ask(server.GET('/api/robots')),
+  pulls: () => ask(server.GET('/api/lab/pulls')),
   makeJoiningCode: () => ask(server.POST('/api/robots/codes')),
   stopAll: () => ask(server.POST('/api/robots/stop')),
   removeRobot: (robot: string) => command(server.DELETE('/api/robots/{robot}', { params: { path: { robot } } })),
@@ -161,9 +162,6 @@ export const api = {
   sessionControllers: () => ask(server.GET('/api/sessions/controllers')),
   sessionRobots: () => ask(server.GET('/api/sessions/robots')),
   figures: (query: FigureQuery) => ask(server.GET('/api/figures', { params: { query } })),
-  labRobots: () => ask(server.GET('/api/lab/robots')),
-  addLabRobot: (robot: schemas.NewLabRobot) => command(server.POST('/api/lab/robots', { body: robot })),
-  removeLabRobot: (robot: number) => command(server.DELETE('/api/lab/robots/{robot}', { params: { path: { robot } } })),
   session: (session: number) => ask(server.GET('/api/sessions/{session}', { params: { path: { session } } })),
   /** `base` has the texts that the editing began from; with null, whatever they are by now is replaced */
   changeSession: (session: number, changes: SessionEdit, base: SessionTexts | null) =>

@@ -42,11 +42,13 @@ class Need(IntEnum):
     NOTHING = 0
     VIEWER = 1
     """To be signed in."""
-    OPERATOR = 2
+    ARCHIVE = 2
+    """To be the lab that the robot has joined, or to have the role of an operator."""
+    OPERATOR = 3
     """The role of an operator."""
-    CONTROL = 3
+    CONTROL = 4
     """To hold the control of the robot, which one page or program has at a time."""
-    ADMINISTER = 4
+    ADMINISTER = 5
     """The role of an operator, and no token whose scope leaves this out."""
 
 

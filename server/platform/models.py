@@ -193,13 +193,14 @@ class CommTestCell(SQLModel, table=True):
 
 
 class DeviceRow(SQLModel, table=True):
-    """A browser or a program that may come in. Times are UTC (s since 1970); `seen` is kept to the hour.
+    """A browser, a program or a lab that may come in. Times are UTC (s since 1970).
 
-    `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a cookie), "program" (a bearer
-    token), "reader" (the cookie of a reading link, for the session `session_id` alone), "removed" (no secret;
-    browsers do not get its name). `page_secret` is the SHA-256 of a browser's
-    second secret, which its page keeps; a browser that was paired before there was one has None, and signs
-    in again. `limited` is a token that may not administer, in any role; it never ends where `ends` is None.
+    `seen` is kept to the hour. `secret` is the SHA-256 of what it proves itself with. Kinds: "browser" (a
+    cookie), "program" and "lab" (a bearer token), "reader" (the cookie of a reading link, for the session
+    `session_id` alone), "removed" (no secret; browsers do not get its name). `page_secret` is the SHA-256 of
+    a browser's second secret, which its page keeps; a browser that was paired before there was one has None,
+    and signs in again. `limited` is a token that may not administer, in any role; it never ends where `ends`
+    is None.
     """
 
     __tablename__ = "device"
@@ -365,26 +366,11 @@ class RunFiguresRow(SQLModel, table=True):
     words: str
 
 
-class LabRobotRow(SQLModel, table=True):
-    """A robot that a lab knows: its address, the token by which it lets the lab in, and when it was added.
-
-    `certificate` is what its HTTPS is known by (PEM); empty where public authorities vouch for it, and for
-    HTTP. Time is UTC (s since 1970).
-    """
-
-    __tablename__ = "lab_robot"
-    __table_args__ = (UniqueConstraint("name", name="lab_robot_name"), NEVER_AGAIN)
-
-    id: int | None = Field(default=None, primary_key=True)
-    name: str
-    url: str
-    token: str
-    certificate: str
-    added: float
-
-
 class PulledSessionRow(SQLModel, table=True):
-    """A session that a lab has pulled: once purged there, it is not pulled again. Time as above."""
+    """A session that a lab has pulled: once purged there, it is not pulled again.
+
+    `robot` is the name by which the robot had joined. Time is UTC (s since 1970).
+    """
 
     __tablename__ = "pulled_session"
 

@@ -1,7 +1,8 @@
-"""The robots that have joined a lab: a file that survives the lab's end."""
+"""The robots that have joined a lab: a file that survives the lab's end, and is there without the archive."""
 
 import json
 import threading
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -41,7 +42,8 @@ class PairedRobot:
     """A robot that has joined; `joined` in s since 1970.
 
     `address` is that of its own page, as it said last. `fingerprint` is that of its certificate, empty
-    without TLS. `token` lets the lab read and stop it.
+    without TLS, and where public authorities vouch for it. `token` lets the lab read it, stop it, and fetch
+    its sessions.
     """
 
     name: str
@@ -58,9 +60,14 @@ class PairedRobots:
         self._file: Path = folder.paired_robots
         self._robots: dict[str, PairedRobot] = {}
         self._changing = threading.Lock()
+        self._listeners: list[Callable[[], None]] = []
         if self._file.exists():
             entries = json.loads(self._file.read_bytes())
             self._robots = {entry["name"]: PairedRobot(**entry) for entry in entries}
+
+    def listen(self, changed: Callable[[], None]) -> None:
+        """Have a function called after each change, in the thread of the change."""
+        self._listeners.append(changed)
 
     def all(self) -> list[PairedRobot]:
         """Return the robots, by name."""
@@ -105,3 +112,5 @@ class PairedRobots:
         text = json.dumps([asdict(robot) for robot in robots.values()], ensure_ascii=False, indent=1)
         write_whole(self._file, text.encode(), 0o600)
         self._robots = robots
+        for changed in self._listeners:
+            changed()

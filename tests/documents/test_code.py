@@ -37,9 +37,6 @@ DASK = (
     "dask scheduler --protocol tls --port 8786 --tls-ca-file ca.pem --tls-cert certificate.pem "
     "--tls-key key.pem"
 )
-LAB_ADD = (
-    "mucat lab add turtle-1 https://turtle-1.local:8000 --certificate certificate.pem --data /srv/mucat-lab"
-)
 UNRUN = {
     ("../README.md", "pip install -c constraints.txt ./mucat-*.whl ./mucat_emulator-*_$(uname -m).whl"): (
         "it installs into the system; tests/packages installs the same wheels"
@@ -50,7 +47,6 @@ UNRUN = {
         "run/lab.md",
         "mucat lab run --data /srv/mucat-lab",
     ): "tests/server/features/lab serves one",
-    ("run/lab.md", LAB_ADD): "a robot; tests/server/features/lab adds and pulls from one",
     ("run/lab.md", "mucat lab lake lake --topics control depth --data /srv/mucat-lab"): (
         "an archive; tests/server/features/exports/test_lake.py makes one"
     ),

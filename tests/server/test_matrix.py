@@ -24,6 +24,8 @@ from server.container import Container
 from server.driving.arbiter import ControlArbiter
 from server.features.events.config import EventsConfig
 from server.health.monitor import HealthMonitor
+from server.http.sign_in.access import Access
+from server.http.sign_in.identity import SHELL
 from server.http.sign_in.policy import MESSAGES
 from server.platform.settings import Settings
 from tests.server.blocks import state_block
@@ -32,7 +34,7 @@ from tests.server.runtime_end import RuntimeEnd
 from tests.server.waiting import until
 from tests.shell import shell_headers
 
-Least = Literal["anyone", "viewer", "operator", "control", "administer"]
+Least = Literal["anyone", "viewer", "archive", "operator", "control", "administer"]
 Who = Literal[
     "anonymous",
     "viewer",
@@ -41,6 +43,7 @@ Who = Literal[
     "program that reads",
     "program that operates",
     "program that administers",
+    "lab",
     "thief of a cookie",
     "reader of another session",
 ]
@@ -135,11 +138,9 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/sessions/controllers"): "viewer",
     ("GET", "/api/sessions/groups"): "viewer",
     ("GET", "/api/sessions/robots"): "viewer",
-    ("POST", "/api/sessions/archived"): "operator",
+    ("POST", "/api/sessions/archived"): "archive",
     ("GET", "/api/figures"): "viewer",
-    ("GET", "/api/lab/robots"): "viewer",
-    ("POST", "/api/lab/robots"): "administer",
-    ("DELETE", "/api/lab/robots/{robot}"): "administer",
+    ("GET", "/api/lab/pulls"): "viewer",
     ("GET", "/api/tags"): "viewer",
     ("POST", "/api/sessions"): "operator",
     ("GET", "/api/sessions/{session}"): "viewer",
@@ -175,7 +176,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/exports"): "viewer",
     ("POST", "/api/exports"): "viewer",
     ("GET", "/api/exports/{export}"): "viewer",
-    ("DELETE", "/api/exports/{export}"): "operator",
+    ("DELETE", "/api/exports/{export}"): "archive",
     ("GET", "/api/exports/{export}/file"): "viewer",
     ("POST", "/api/imports"): "operator",
     ("GET", "/api/update"): "viewer",
@@ -265,6 +266,7 @@ ROLES: dict[Who, int] = {
     "anonymous": 0,
     "viewer": 1,
     "program that reads": 1,
+    "lab": 1,
     "operator": 2,
     "program that operates": 2,
     "program that administers": 2,
@@ -272,7 +274,14 @@ ROLES: dict[Who, int] = {
     "thief of a cookie": 0,
     READER: 0,
 }
-LEAST: dict[Least, int] = {"anyone": 0, "viewer": 1, "operator": 2, "control": 3, "administer": 2}
+LEAST: dict[Least, int] = {
+    "anyone": 0,
+    "viewer": 1,
+    "archive": 2,
+    "operator": 2,
+    "control": 3,
+    "administer": 2,
+}
 REFUSALS = {401, 403, 423}
 SAFE = {"GET", "HEAD", "OPTIONS"}
 ABSENT = dict.fromkeys(
@@ -302,7 +311,7 @@ def expected(
         return None if least == "anyone" else 403 if reader else 401
     if least == "administer" and who == "program that operates":
         return 403
-    if ROLES[who] >= LEAST[least]:
+    if ROLES[who] >= LEAST[least] or (who, least) == ("lab", "archive"):
         return None
     return 423 if ROLES[who] == 2 else 403
 
@@ -376,6 +385,9 @@ class House:
         """Return a requester that has just signed in."""
         if who == READER:
             return await self._read()
+        if who == "lab":
+            _, token = await self.container.services.get(Access).make_lab("Lab", SHELL)
+            return Somebody({"authorization": f"Bearer {token}"})
         verb = who.removeprefix("program that ")
         if verb != who:
             return await self._program(verb.removesuffix("s"))

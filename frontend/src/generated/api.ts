@@ -160,12 +160,8 @@ export interface paths {
     "/api/lab/join": {
         post: operations["joinLab"];
     };
-    "/api/lab/robots": {
-        get: operations["listLabRobots"];
-        post: operations["addLabRobot"];
-    };
-    "/api/lab/robots/{robot}": {
-        delete: operations["removeLabRobot"];
+    "/api/lab/pulls": {
+        get: operations["listPulls"];
     };
     "/api/layouts": {
         get: operations["listLayouts"];
@@ -1113,7 +1109,7 @@ export interface components {
             ends: number | null;
             id: number;
             /** @enum {string} */
-            kind: "browser" | "program" | "reader" | "shell";
+            kind: "browser" | "program" | "lab" | "reader" | "shell";
             /** @description true for a token that may not administer, in any role */
             limited: boolean;
             name: string;
@@ -1580,15 +1576,16 @@ export interface components {
             words: string;
         };
         /**
-         * @description A caller. `device` is the number of the browser, program or reading link; 0 is the shell.
+         * @description A caller. `device` is the number of the browser, program, lab or reading link; 0 is the shell.
          *
+         *     A lab is one that this robot has joined: a viewer who may fetch sessions into an archive.
          *     `limited` is a program that may not administer, also not as an operator. `session` is the one session that
          *     a reader may read; None for all others.
          */
         Identity: {
             device: number;
             /** @enum {string} */
-            kind: "browser" | "program" | "reader" | "shell";
+            kind: "browser" | "program" | "lab" | "reader" | "shell";
             /** @default false */
             limited: boolean;
             name: string;
@@ -1679,27 +1676,6 @@ export interface components {
             connected: boolean;
             joined: number | null;
             name: string | null;
-        };
-        /** @description A robot of a lab, and what comes of pulling from it. */
-        LabRobot: {
-            /**
-             * Format: date-time
-             * @description UTC
-             */
-            added: string;
-            id: number;
-            /** @description sessions that the archive lacks, as of the last look */
-            lacking: number;
-            name: string;
-            /** @enum {string} */
-            phase: "waiting" | "pulling" | "done" | "armed" | "unreachable" | "failed";
-            /** @description sessions that cannot be pulled, and why; at most ten */
-            problems: string[];
-            /** @description UTC; when it answered last, since the lab was started */
-            seen: string | null;
-            /** @description what it does, or why it does not, as a sentence */
-            text: string;
-            url: string;
         };
         /** @description A saved layout with its document, which may be of another version of the program. */
         LayoutDetails: {
@@ -2071,16 +2047,6 @@ export interface components {
             start?: number | null;
             /** @description names of topics; null for all. Not for csv-grid, archive and report */
             topics?: string[] | null;
-        };
-        /** @description A robot that a lab is to pull from. */
-        NewLabRobot: {
-            /** @description PEM of the robot's certificate; empty with HTTP, and where a public authority signed it */
-            certificate?: string;
-            name: string;
-            /** @description one of the robot's tokens with the scope “operate” */
-            token: string;
-            /** @description its address, such as https://turtle.local:8000 */
-            url: string;
         };
         /** @description A layout to be saved under a name. */
         NewLayout: {
@@ -2534,6 +2500,27 @@ export interface components {
         Restored: {
             changed: components["schemas"]["ChangedValue"][];
             left_out: components["schemas"]["LeftOut"][];
+        };
+        /** @description The pull from one robot of the lab, and what the archive has of it. */
+        RobotPull: {
+            /** @description sessions that the archive lacks, as of the last look */
+            lacking: number;
+            /** @enum {string} */
+            phase: "waiting" | "pulling" | "done" | "armed" | "unreachable" | "failed";
+            /** @description sessions that cannot be pulled, and why; at most ten */
+            problems: string[];
+            /** @description from 0 to 1, of the session that is being pulled */
+            progress: number;
+            /** @description UTC; when the last of them was pulled; null before */
+            pulled: string | null;
+            /** @description its name, as in `GET /api/robots` */
+            robot: string;
+            /** @description UTC; when it answered last, since the lab was started */
+            seen: string | null;
+            /** @description its sessions in the archive, as of the last look */
+            sessions: number;
+            /** @description what it does, or why it does not, as a sentence */
+            text: string;
         };
         /** @description The lab's robots by name; `problem` says why none can be heard, empty otherwise. */
         RosterDetails: {
@@ -3749,7 +3736,6 @@ export type Joining = components['schemas']['Joining'];
 export type JoiningRobot = components['schemas']['JoiningRobot'];
 export type JsonValue = components['schemas']['JsonValue'];
 export type LabMembership = components['schemas']['LabMembership'];
-export type LabRobot = components['schemas']['LabRobot'];
 export type LayoutDetails = components['schemas']['LayoutDetails'];
 export type LayoutDocument = components['schemas']['LayoutDocument'];
 export type LeftLab = components['schemas']['LeftLab'];
@@ -3788,7 +3774,6 @@ export type Moment = components['schemas']['Moment'];
 export type NewBookmark = components['schemas']['NewBookmark'];
 export type NewCode = components['schemas']['NewCode'];
 export type NewExport = components['schemas']['NewExport'];
-export type NewLabRobot = components['schemas']['NewLabRobot'];
 export type NewLayout = components['schemas']['NewLayout'];
 export type NewMission = components['schemas']['NewMission'];
 export type NewProfile = components['schemas']['NewProfile'];
@@ -3835,6 +3820,7 @@ export type RecordedMission = components['schemas']['RecordedMission'];
 export type RecordedTopic = components['schemas']['RecordedTopic'];
 export type RelayStart = components['schemas']['RelayStart'];
 export type Restored = components['schemas']['Restored'];
+export type RobotPull = components['schemas']['RobotPull'];
 export type RosterDetails = components['schemas']['RosterDetails'];
 export type RosterRobot = components['schemas']['RosterRobot'];
 export type RunSummary = components['schemas']['RunSummary'];
@@ -4797,38 +4783,15 @@ export interface operations {
             };
         };
     };
-    listLabRobots: {
+    listPulls: {
         parameters: { query?: never };
         requestBody?: never;
         responses: {
             200: {
                 content: {
-                    "application/json": components["schemas"]["LabRobot"][];
+                    "application/json": components["schemas"]["RobotPull"][];
                 };
             };
-        };
-    };
-    addLabRobot: {
-        parameters: { query?: never };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["NewLabRobot"];
-            };
-        };
-        responses: {
-            204: { content?: never };
-        };
-    };
-    removeLabRobot: {
-        parameters: {
-            query?: never;
-            path: {
-                robot: number;
-            };
-        };
-        requestBody?: never;
-        responses: {
-            204: { content?: never };
         };
     };
     listLayouts: {

@@ -38,6 +38,7 @@ export const people = {
   devices: {
     title: 'Browsers and programs',
     role: 'Role or scope',
+    lab: 'read, STOP, fetch sessions',
     lastSeen: 'Last seen',
     actions: 'Change or revoke',
     thisOne: 'this browser',

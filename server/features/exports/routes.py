@@ -17,7 +17,7 @@ from server.health.monitor import HealthMonitor
 from server.http.dependencies import Provided
 from server.http.operations import Operations
 from server.http.sign_in.identity import Caller
-from server.http.sign_in.policy import Need
+from server.http.sign_in.policy import Need, refusal
 from server.http.uploads import InvalidUploadError
 from server.platform.disk_space import FileWriteError
 from server.platform.errors import ConflictError
@@ -47,7 +47,7 @@ async def list_exports(jobs: Provided[Jobs]) -> list[Job]:
 )
 async def start_export(store: Provided[Store], jobs: Provided[Jobs], caller: Caller, body: NewExport) -> Job:
     """Export a session to a file, in a process beside the server; GET returns the progress."""
-    most = JOBS_MAX if caller.role == "operator" else JOBS_MAX - OPERATORS_ONLY
+    most = JOBS_MAX - OPERATORS_ONLY if refusal(caller, Need.ARCHIVE) else JOBS_MAX
     return await jobs.add(await run_in_threadpool(find_row, store, body.session), body, most)
 
 
@@ -57,9 +57,7 @@ async def get_export(jobs: Provided[Jobs], export: Identifier) -> Job:
     return jobs.find(export)
 
 
-@router.operation(
-    "DELETE /exports/{export}", Need.OPERATOR, UnknownExportError, {409: "It cannot be deleted"}
-)
+@router.operation("DELETE /exports/{export}", Need.ARCHIVE, UnknownExportError, {409: "It cannot be deleted"})
 async def delete_export(jobs: Provided[Jobs], export: Identifier) -> None:
     """Cancel an export, or delete its file."""
     jobs.remove(jobs.find(export))

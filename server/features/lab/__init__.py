@@ -8,6 +8,6 @@ FEATURE = Feature(
     section=LabConfig,
     place="lab",
     routes=("server.features.lab.routes:router",),
-    commands={"lab": "server.features.lab.command:lab", "lab add": "server.features.lab.command:add_robot"},
+    commands={"lab": "server.features.lab.command:lab"},
     plug="server.features.lab.plug:LabPlug",
 )

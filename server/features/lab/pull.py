@@ -14,10 +14,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import partial
-from threading import Event
+from shutil import rmtree
 from time import time
 
-from sqlalchemy import Connection, insert
+from sqlalchemy import Connection, func, insert
 from sqlmodel import col, select
 
 from robot_runtime.durable_files import PART, make_folder
@@ -29,14 +29,14 @@ from server.features.lab.robot_client import (
     RobotsExport,
     RobotsSession,
 )
-from server.features.lab.robots import LabRobots
-from server.features.lab.schemas import LabRobot, Phase
+from server.features.lab.schemas import Phase, RobotPull
 from server.library.intake import ArchiveIntake
 from server.library.schemas import ARCHIVED_MAX
 from server.platform.database_copies import sum_file
 from server.platform.disk_space import FileWriteError, require_free
 from server.platform.errors import InvalidError
-from server.platform.models import LabRobotRow, PulledSessionRow, SessionRow
+from server.platform.models import PulledSessionRow, SessionRow
+from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder
 from server.platform.store import Store, StoreError
 from server.recording.session import HIDDEN
@@ -57,8 +57,11 @@ IDENTIFIERS_AT_ONCE = 500
 class _Progress:
     phase: Phase = "waiting"
     text: str = "It was not looked at yet."
+    progress: float = 0.0
     lacking: int = 0
     seen: float | None = None
+    sessions: int = 0
+    pulled: float | None = None
     problems: dict[str, str] = field(default_factory=dict)
     """By the identifiers of sessions that cannot be read."""
 
@@ -66,18 +69,18 @@ class _Progress:
 class SessionPull:
     """The pull from all robots of a lab, one robot and one session at a time."""
 
-    def __init__(self, store: Store, robots: LabRobots, intake: ArchiveIntake, folder: DataFolder) -> None:
+    def __init__(self, store: Store, robots: PairedRobots, intake: ArchiveIntake, folder: DataFolder) -> None:
         self._store = store
         self._robots = robots
         self._intake = intake
         self._folder = folder.pulls
-        self._progress: defaultdict[int, _Progress] = defaultdict(_Progress)
-        self._stopping = Event()
+        self._progress: defaultdict[str, _Progress] = defaultdict(_Progress)
+        self._over = False
         self._wake = asyncio.Event()
 
-    def listed(self) -> list[LabRobot]:
-        """Return the robots, and what comes of pulling from them. Raise StoreError."""
-        return [_describe(row, self._progress[row.id or 0]) for row in self._robots.listed()]
+    def listed(self) -> list[RobotPull]:
+        """Return, by the robots' names, what comes of pulling from them."""
+        return [_describe(robot.name, self._progress[robot.name]) for robot in self._robots.all()]
 
     def wake(self) -> None:
         """Look at the robots soon."""
@@ -85,35 +88,57 @@ class SessionPull:
 
     def stop(self) -> None:
         """End a download: what has arrived stays."""
-        self._stopping.set()
+        self._over = True
 
     async def run(self) -> None:
         """Pull for ever."""
+        loop = asyncio.get_running_loop()
+        self._robots.listen(lambda: loop.call_soon_threadsafe(self._follow))
         while True:
             self._wake.clear()
-            try:
-                for robot in await asyncio.to_thread(self._robots.listed):
-                    await self.pull(robot)
-            except StoreError as problem:
-                log.warning("nothing is pulled: %s", problem)
+            for robot in self._robots.all():
+                await self.pull(robot)
             with suppress(TimeoutError):
                 async with asyncio.timeout(PERIOD):
                     await self._wake.wait()
 
-    async def pull(self, robot: LabRobotRow) -> None:
-        """Pull what is lacking from one robot now. Raise StoreError."""
-        progress = self._progress[robot.id or 0]
-        client = RobotClient(robot, self._stopping)
+    async def pull(self, robot: PairedRobot) -> None:
+        """Pull what is lacking from one robot now."""
+        progress = self._progress[robot.name]
+        client = RobotClient(robot, lambda: self._over or not self._is_known(robot))
         try:
+            await asyncio.to_thread(self._count, robot.name, progress)
             await self._pull(client, robot, progress)
         except RobotAnswerError as problem:
             progress.phase, progress.text = "failed" if problem.status else "unreachable", str(problem)
-        except (FileWriteError, OSError) as problem:
+        except (FileWriteError, StoreError, OSError) as problem:
             progress.phase, progress.text = "failed", str(problem)
         except PullStoppedError:
-            return
+            if not self._over:
+                # It was removed: nothing continues what has arrived.
+                await asyncio.to_thread(rmtree, self._folder, ignore_errors=True)
 
-    async def _pull(self, client: RobotClient, robot: LabRobotRow, progress: _Progress) -> None:
+    def _follow(self) -> None:
+        """Look at the robots that there are now."""
+        names = {robot.name for robot in self._robots.all()}
+        for name in self._progress.keys() - names:
+            del self._progress[name]
+        self._wake.set()
+
+    def _is_known(self, robot: PairedRobot) -> bool:
+        """Return False once a robot was removed, even if it has joined again since."""
+        return any(known.token == robot.token for known in self._robots.all())
+
+    def _count(self, robot: str, progress: _Progress) -> None:
+        """Count the sessions of a robot in the archive. Raise StoreError."""
+        here = col(SessionRow.robot) == robot, col(SessionRow.state).not_in(HIDDEN)
+        sessions = select(func.count()).where(*here, col(SessionRow.deleted).is_(None))
+        pulled = select(func.max(PulledSessionRow.pulled)).where(col(PulledSessionRow.robot) == robot)
+        with self._store.read() as database:
+            progress.sessions = database.exec(sessions).one()
+            progress.pulled = database.exec(pulled).one()
+
+    async def _pull(self, client: RobotClient, robot: PairedRobot, progress: _Progress) -> None:
         sessions = await asyncio.to_thread(client.sessions)
         progress.seen = time()
         stored, pulled = await asyncio.to_thread(
@@ -130,9 +155,11 @@ class SessionPull:
                 return
             progress.lacking = len(lacking) - number
             progress.phase, progress.text = "pulling", f"Its session “{session.name}” is being pulled."
+            progress.progress = 0.0
             if await self._take(client, session, progress):
                 stored.add(session.identifier)
                 await self._store.write(partial(_note, session=session, robot=robot.name))
+                await asyncio.to_thread(self._count, robot.name, progress)
         await self._report(
             client, [entry for entry in sessions if entry.identifier in stored and not entry.archived]
         )
@@ -170,7 +197,11 @@ class SessionPull:
             if other != path:
                 other.unlink()
         require_free(self._folder, COPIES * export.bytes)
-        await asyncio.to_thread(client.download, export, path)
+
+        def see(there: int) -> None:
+            progress.progress = there / export.bytes
+
+        await asyncio.to_thread(client.download, export, path, see)
         if await asyncio.to_thread(sum_file, path) != export.sha256:
             path.unlink()
             raise RobotAnswerError(
@@ -216,15 +247,19 @@ def _parts(items: Sequence[str], size: int) -> Iterable[Sequence[str]]:
     return (items[at : at + size] for at in range(0, len(items), size))
 
 
-def _describe(row: LabRobotRow, progress: _Progress) -> LabRobot:
-    return LabRobot(
-        id=row.id or 0,
-        name=row.name,
-        url=row.url,
-        added=datetime.fromtimestamp(row.added, UTC),
+def _describe(robot: str, progress: _Progress) -> RobotPull:
+    return RobotPull(
+        robot=robot,
         phase=progress.phase,
         text=progress.text,
+        progress=progress.progress,
         lacking=progress.lacking,
         problems=[*progress.problems.values()][:PROBLEMS_SHOWN],
-        seen=None if progress.seen is None else datetime.fromtimestamp(progress.seen, UTC),
+        seen=_moment(progress.seen),
+        sessions=progress.sessions,
+        pulled=_moment(progress.pulled),
     )
+
+
+def _moment(time: float | None) -> datetime | None:
+    return None if time is None else datetime.fromtimestamp(time, UTC)

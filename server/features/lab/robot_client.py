@@ -1,23 +1,32 @@
 """Requests from a lab to a robot's server. They block: not for the event loop."""
 
-import json
-import ssl
-import urllib.error
-import urllib.request
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from email.message import Message
-from http.client import HTTPException, HTTPResponse
+from http.client import HTTPResponse
 from pathlib import Path
-from threading import Event
 from typing import Any
 
-from server.platform.models import LabRobotRow
+from server.http.pinned_requests import (
+    OtherServerRefusedError,
+    UnreachableError,
+    known_by,
+    open_answer,
+    read_document,
+    read_piece,
+)
+from server.platform.paired_robots import PairedRobot
 
 SECONDS = 20.0
-PAGE = 500
+PAGE = 200
 PIECE_BYTES = 1 << 18
 PARTIAL = 206
+SIGNED_OUT = 401
+REVOKED = (
+    "It lets this lab in no more: somebody has revoked its token there, under People. Remove the robot here, "
+    "and let it join again."
+)
 
 
 class RobotAnswerError(Exception):
@@ -32,7 +41,7 @@ class RobotAnswerError(Exception):
 
 
 class PullStoppedError(Exception):
-    """The lab ends: what has arrived stays, and the rest is fetched later."""
+    """The pull ends: what has arrived stays, and the rest is fetched later."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,21 +67,14 @@ class RobotsExport:
 
 
 class RobotClient:
-    """Access to one robot; a download ends once `stopping` is set. All methods raise RobotAnswerError."""
+    """Access to one robot.
 
-    def __init__(self, robot: LabRobotRow, stopping: Event) -> None:
-        self._url = f"{robot.url}/api"
-        self._token = robot.token
-        self._stopping = stopping
-        context = ssl.create_default_context()
-        if robot.certificate:
-            # The robot's address changes, and its clock may not be set: it is known by the certificate alone.
-            context = ssl.create_default_context(cadata=robot.certificate)
-            context.check_hostname = False
-        # No proxy: robots are in the lab's own network.
-        self._opener = urllib.request.build_opener(
-            urllib.request.ProxyHandler({}), urllib.request.HTTPSHandler(context=context)
-        )
+    All methods raise RobotAnswerError, and PullStoppedError once `is_over` says so.
+    """
+
+    def __init__(self, robot: PairedRobot, is_over: Callable[[], bool]) -> None:
+        self._robot = robot
+        self._is_over = is_over
 
     def is_armed(self) -> bool:
         """Return whether the robot is armed; True where it does not say so."""
@@ -84,7 +86,7 @@ class RobotClient:
         path: str | None = f"/sessions?limit={PAGE}"
         while path is not None:
             with self._open("GET", path) as answer:
-                rows: list[Mapping[str, Any]] = _read(answer)
+                rows: list[Mapping[str, Any]] = read_document(self._robot.address, answer)
                 path = _following(answer.headers)
             listed += [
                 RobotsSession(row["id"], row["identifier"], row["name"], row["archived"] is not None)
@@ -111,20 +113,24 @@ class RobotClient:
         """Return how far an archive is."""
         return _export(self._ask("GET", f"/exports/{number}"))
 
-    def download(self, export: RobotsExport, path: Path) -> None:
-        """Download an archive, or the rest of it. Raise OSError, and PullStoppedError where the lab ends."""
+    def download(self, export: RobotsExport, path: Path, arrived: Callable[[int], None]) -> None:
+        """Download an archive, or the rest of it; `arrived` is called with the bytes that are there.
+
+        Raise OSError.
+        """
         there = path.stat().st_size if path.exists() else 0
         if there == export.bytes:
             return
         headers = {"range": f"bytes={there}-", "if-range": f'"{export.sha256}"'} if there else {}
-        with (
-            self._open("GET", f"/exports/{export.id}/file", headers=headers) as answer,
-            path.open("ab" if answer.status == PARTIAL else "wb") as file,
-        ):
-            while piece := _receive(answer):
-                file.write(piece)
-                if self._stopping.is_set():
-                    raise PullStoppedError
+        with self._open("GET", f"/exports/{export.id}/file", headers=headers) as answer:
+            there = there if answer.status == PARTIAL else 0
+            with path.open("ab" if there else "wb") as file:
+                while piece := read_piece(self._robot.address, answer, PIECE_BYTES):
+                    file.write(piece)
+                    there += len(piece)
+                    arrived(there)
+                    if self._is_over():
+                        raise PullStoppedError
 
     def remove_export(self, export: RobotsExport) -> None:
         """Remove an archive from the robot's disk."""
@@ -136,54 +142,41 @@ class RobotClient:
 
     def _ask(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:
         with self._open(method, path, body) as answer:
-            return _read(answer)
+            return read_document(self._robot.address, answer)
 
+    @contextmanager
     def _open(
         self,
         method: str,
         path: str,
         body: Mapping[str, Any] | None = None,
         headers: Mapping[str, str] | None = None,
-    ) -> HTTPResponse:
-        data = None if body is None else json.dumps(body).encode()
-        sent = {
-            "authorization": f"Bearer {self._token}",
-            "content-type": "application/json",
-            **(headers or {}),
-        }
-        request = urllib.request.Request(self._url + path, data, sent, method=method)
-        try:
-            answer: HTTPResponse = self._opener.open(request, timeout=SECONDS)
-        except urllib.error.HTTPError as problem:
-            raise RobotAnswerError(_detail(problem), problem.code) from problem
-        except (OSError, HTTPException) as problem:
-            reason = getattr(problem, "reason", None) or problem
+    ) -> Iterator[HTTPResponse]:
+        robot = self._robot
+        if self._is_over():
+            raise PullStoppedError
+        if not robot.address:
             raise RobotAnswerError(
-                f"It does not answer at {self._url.removesuffix('/api')}: {reason}."
-            ) from problem
-        return answer
-
-
-def _receive(answer: HTTPResponse) -> bytes:
-    try:
-        return answer.read(PIECE_BYTES)
-    except (OSError, HTTPException) as problem:
-        raise RobotAnswerError(f"The connection broke: {problem}. The rest is fetched later.") from problem
-
-
-def _read(answer: HTTPResponse) -> Any:
-    try:
-        text = answer.read()
-        return json.loads(text) if text else None
-    except (OSError, HTTPException, ValueError) as problem:
-        raise RobotAnswerError(f"Its answer cannot be read: {problem}.") from problem
-
-
-def _detail(problem: urllib.error.HTTPError) -> str:
-    try:
-        return str(json.load(problem)["detail"])
-    except (ValueError, KeyError, TypeError, OSError):
-        return f"It refused with status {problem.code}."
+                "Its page is open to no other computer, so that nothing can be fetched. On the robot, set "
+                "server.host in robot.toml, such as to 0.0.0.0."
+            )
+        try:
+            with open_answer(
+                robot.address,
+                method,
+                path,
+                is_meant=known_by(robot.fingerprint),
+                token=robot.token,
+                body=body,
+                headers=headers,
+                seconds=SECONDS,
+            ) as answer:
+                yield answer
+        except UnreachableError as problem:
+            raise RobotAnswerError(str(problem)) from problem
+        except OtherServerRefusedError as problem:
+            text = REVOKED if problem.status == SIGNED_OUT else str(problem)
+            raise RobotAnswerError(text, problem.status) from problem
 
 
 def _following(headers: Message) -> str | None:

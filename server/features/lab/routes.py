@@ -1,29 +1,15 @@
-"""The robots of a lab: those it pulls sessions from."""
+"""The pull of a lab from its robots."""
 
 from server.features.lab.pull import SessionPull
-from server.features.lab.robots import LabRobots, RobotKnownError, UnknownRobotError
-from server.features.lab.schemas import LabRobot, NewLabRobot
+from server.features.lab.schemas import RobotPull
 from server.http.dependencies import Provided
-from server.http.operations import Identifier, Operations
+from server.http.operations import Operations
 from server.http.sign_in.policy import Need
 
 router = Operations(prefix="/api/lab", tags=["lab"])
 
 
-@router.operation("GET /robots", Need.VIEWER)
-def list_lab_robots(pull: Provided[SessionPull]) -> list[LabRobot]:
-    """List the robots of the lab by name, and what comes of pulling from them."""
+@router.operation("GET /pulls", Need.VIEWER)
+async def list_pulls(pull: Provided[SessionPull]) -> list[RobotPull]:
+    """List, by the name of each robot that has joined, what comes of pulling its sessions."""
     return pull.listed()
-
-
-@router.operation("POST /robots", Need.ADMINISTER, RobotKnownError, status_code=204)
-async def add_lab_robot(robots: Provided[LabRobots], pull: Provided[SessionPull], body: NewLabRobot) -> None:
-    """Add a robot; its sessions are pulled whenever it is disarmed and reachable."""
-    await robots.add(body)
-    pull.wake()
-
-
-@router.operation("DELETE /robots/{robot}", Need.ADMINISTER, UnknownRobotError)
-async def remove_lab_robot(robots: Provided[LabRobots], robot: Identifier) -> None:
-    """Remove a robot; its sessions stay in the archive."""
-    await robots.remove(robot)

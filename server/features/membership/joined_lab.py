@@ -13,9 +13,13 @@ FILE = "lab.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JoinedLab:
-    """A lab; `router` is its router's Zenoh endpoint, `device` the lab's token, `joined` in s since 1970."""
+    """A lab; `router` is its router's Zenoh endpoint, `device` the lab's token, `joined` in s since 1970.
+
+    `robot` is the robot's name in the lab: the one that it had when it joined.
+    """
 
     name: str
+    robot: str
     address: str
     router: str
     device: int

@@ -26,6 +26,8 @@ from server.stream.bridge import Bridge
 log = logging.getLogger(__name__)
 
 PRESENCE_SECONDS = 1.0
+ADDRESS_SECONDS = 10.0
+"""Interval of the looks at the robot's own address, which its network may change at any time."""
 STOP_SECONDS = 5.0
 """Longer than the lab waits: a STOP that comes late stops all the same."""
 
@@ -43,6 +45,7 @@ class LabLink:
         self._source = source
         self._lab: JoinedLab | None = None
         self._messages: ZenohTransport | None = None
+        self._address = ""
 
     @property
     def connected(self) -> bool:
@@ -53,9 +56,10 @@ class LabLink:
         """Dial a lab's router, which need not be there. Raise OSError, ConfigError."""
         self._loop = asyncio.get_running_loop()
         self._lab = lab
+        self._address = await asyncio.to_thread(self._source.address_for, lab.address)
         self._messages = await asyncio.to_thread(
             ZenohTransport,
-            self._settings.robot.name,
+            lab.robot,
             connect=[lab.router],
             network=member_settings(self._settings.data.membership),
         )
@@ -69,6 +73,13 @@ class LabLink:
             self._say()
             await asyncio.sleep(PRESENCE_SECONDS)
 
+    async def follow_address(self) -> None:
+        """Look at the robot's own address, for ever."""
+        while True:
+            await asyncio.sleep(ADDRESS_SECONDS)
+            if self._lab is not None:
+                self._address = await asyncio.to_thread(self._source.address_for, self._lab.address)
+
     async def close(self, *, leave: bool = False) -> None:
         """Hang up; to `leave` says so to the lab, which then forgets the robot."""
         messages = self._messages
@@ -80,10 +91,10 @@ class LabLink:
         await asyncio.to_thread(messages.close)
 
     def _say(self, *, left: bool = False) -> None:
-        if self._messages is None or self._lab is None:
+        if self._messages is None:
             return
         try:
-            presence = self._source.presence(self._lab.address, left=left)
+            presence = self._source.presence(self._address, left=left)
         except (OSError, ValueError, LookupError) as problem:
             log.warning("the lab does not hear how the robot is: %s", problem)
             return

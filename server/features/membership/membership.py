@@ -86,11 +86,12 @@ class Membership:
                     f"This robot has joined the lab {self.lab.name} already. Leave it first: mucat lab leave."
                 )
             host = urlsplit(address).hostname
-            device, token = await self._access.make_program(f"Lab {host}", "read", None, caller)
+            device, token = await self._access.make_lab(f"Lab {host}", caller)
             try:
                 answer = await asyncio.to_thread(self._ask_lab, address, typed, token)
                 lab = JoinedLab(
                     name=str(answer["lab"]),
+                    robot=self._settings.robot.name,
                     address=address,
                     router=_router_endpoint(address, int(answer["router_port"])),
                     device=device.id,

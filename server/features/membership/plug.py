@@ -20,8 +20,8 @@ class MembershipPlug(Plug):
         await self._membership.open()
 
     def work(self) -> Sequence[Coroutine[Any, Any, None]]:
-        """Say how the robot is."""
-        return (self._link.run(),)
+        """Say how the robot is, and where."""
+        return (self._link.run(), self._link.follow_address())
 
     async def stop(self) -> None:
         """Hang up."""

@@ -1,6 +1,7 @@
 """The robot's presence, from what the server knows of it."""
 
 import shutil
+import socket
 from collections.abc import Iterator
 from typing import Any
 from urllib.parse import urlsplit
@@ -16,6 +17,8 @@ from server.recording.recorder import Recorder
 
 RECENT_SECONDS = 2.0
 GOING_ON = ("running", "paused")
+EVERYWHERE = ("0.0.0.0", "::")
+"""Hosts of a server that listens at all addresses of its computer, also at those that it gets later."""
 
 
 class PresenceSource:
@@ -39,13 +42,20 @@ class PresenceSource:
         return self._fingerprint
 
     def address_for(self, lab: str) -> str:
-        """Return the address of the robot's page for a lab at this address; empty where it has none there."""
-        if self._settings.only_here and not is_loopback(urlsplit(lab).hostname or ""):
-            return ""
-        return self._settings.base_urls()[0]
+        """Return the address of the robot's page for a lab at this address; empty where it has none there.
 
-    def presence(self, lab: str, *, left: bool = False) -> Presence:
-        """Return the presence for a lab at this address. Raise OSError."""
+        Blocks while the lab's name is looked up.
+        """
+        host = urlsplit(lab).hostname or ""
+        if is_loopback(host):
+            return self._settings.base_urls()[0]
+        if self._settings.only_here:
+            return ""
+        everywhere = self._settings.server.host in EVERYWHERE
+        return self._settings.base_url(_own_address(host) if everywhere else "")
+
+    def presence(self, address: str, *, left: bool = False) -> Presence:
+        """Return the presence, with this address of the robot's page. Raise OSError."""
         state = None if self._monitor.silence() is not None else self._monitor.state()
         state = state or {}
         depth = self._monitor.record(DEPTH, RECENT_SECONDS)
@@ -65,7 +75,7 @@ class PresenceSource:
             disk_total=disk.total,
             alarms=list(self._list_alarms(state))[:ALARMS_MAX],
             software=VERSION,
-            address=self.address_for(lab),
+            address=address,
             fingerprint=self.fingerprint,
             left=left,
         )
@@ -85,3 +95,13 @@ class PresenceSource:
         for own in self._alarms.listed():
             if own.active:
                 yield PresentAlarm(severity=own.severity, what=own.what[:500])
+
+
+def _own_address(towards: str) -> str:
+    """Return this computer's address in the network that leads to a host; empty where there is none."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((towards, 9))  # which sends nothing
+        except OSError:
+            return ""
+        return str(probe.getsockname()[0])

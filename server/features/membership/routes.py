@@ -58,7 +58,8 @@ async def join_lab(
 ) -> LabMembership:
     """Join a lab by a code.
 
-    The lab gets a token for reading this robot and stopping it, and the robot's presence once a second.
+    The lab gets the robot's presence once a second, and a token: with it, it reads, stops the robot, and
+    fetches its sessions into the archive.
     """
     await membership.join(body.address, body.code, caller)
     return _describe(membership, link)
@@ -68,7 +69,7 @@ async def join_lab(
 async def leave_lab(membership: Provided[Membership], caller: Caller) -> LeftLab:
     """Leave the lab.
 
-    Its token reads nothing any more.
+    Its token is invalid from now on.
     """
     return LeftLab(notified=await membership.leave(caller))
 

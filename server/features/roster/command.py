@@ -25,11 +25,17 @@ def pair(settings: Settings) -> None:
 @click.command()
 @with_settings
 def robots(settings: Settings) -> None:
-    """List the robots of this lab."""
+    """List the robots of this lab, and what its archive has of them."""
     listed = ask(settings.data, "GET", "/robots")
+    pulls = {pull["robot"]: pull for pull in ask(settings.data, "GET", "/lab/pulls")}
     if listed["problem"]:
         echo(listed["problem"])
-    echo("\n".join(map(_line, listed["robots"])) or "No robot has joined yet: mucat lab pair.")
+    for robot in listed["robots"]:
+        echo(_line(robot))
+        if (pull := pulls.get(robot["name"])) is not None:
+            echo(f"  archive: sessions {pull['sessions']}, lacking {pull['lacking']}. {pull['text']}")
+    if not listed["robots"]:
+        echo("No robot has joined yet: mucat lab pair.")
 
 
 @click.command()

@@ -21,7 +21,7 @@ from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY
 from server.features.roster.fleet_session import FleetSession
 from server.features.roster.router_process import AGAIN_SECONDS, RouterProcess
 from server.features.roster.schemas import RosterDetails, RosterRobot, StoppedRobot
-from server.http.pinned_requests import OtherServerRefusedError, UnreachableError, send
+from server.http.pinned_requests import OtherServerRefusedError, UnreachableError, known_by, send
 from server.interchange.presence import Presence
 from server.platform.authority import Authority
 from server.platform.errors import UnavailableError
@@ -284,7 +284,7 @@ def _ask(robot: PairedRobot, path: str, seconds: float) -> None:
         robot.address,
         "POST",
         path,
-        is_meant=lambda fingerprint: fingerprint == robot.fingerprint,
+        is_meant=known_by(robot.fingerprint),
         token=robot.token,
         seconds=seconds,
     )

@@ -221,7 +221,7 @@ def get_blocks(
     return Response(blocks.data, media_type="application/octet-stream", headers=headers)
 
 
-@router.operation("POST /sessions/archived", Need.OPERATOR)
+@router.operation("POST /sessions/archived", Need.ARCHIVE)
 async def note_archived(catalogue: Provided[Catalogue], body: ArchivedSessions) -> None:
     """Note that a lab has these sessions: where the disk is short of space, they go first.
 

@@ -129,7 +129,7 @@ class Access:
         return self.identify_token(connection.query_params.get("token", ""))
 
     def identify_token(self, token: str) -> Identity | None:
-        """Return the identity of a program's token. Raise SignInEndedError where it counts no longer."""
+        """Return the identity of a program's or lab's token. Raise SignInEndedError where it has ended."""
         return self._find_bearer(token)
 
     def identify_certificate(self, common_name: str) -> Identity | None:
@@ -194,6 +194,15 @@ class Access:
         self._notify("access", "info", f"“{by.name}” made a token for “{name}”, with the scope {scope}.")
         return device, token
 
+    async def make_lab(self, name: str, by: Identity) -> tuple[Device, str]:
+        """Add a lab, which this robot joins; return its device and token, which never ends.
+
+        Raise RefusedError, StoreError.
+        """
+        device, token = await self.devices.add_lab(name)
+        self._notify("access", "info", f"“{by.name}” made a token for “{name}”.")
+        return device, token
+
     async def make_link(self, session: int, ends: float, by: Identity) -> tuple[Device, str]:
         """Add a reading link of a session, until `ends` (s since 1970); return it and its token.
 
@@ -229,6 +238,8 @@ class Access:
         Raise UnknownDeviceError, RefusedError, StoreError.
         """
         device = self.devices.get(number)
+        if device.kind == "lab":
+            raise RefusedError(f"“{device.name}” is a lab: it reads, stops and fetches sessions, no more.")
         if device.role == device.stored_role == role:
             return
         if role == "viewer":
@@ -297,7 +308,7 @@ class Access:
     def _find_bearer(self, token: str) -> Identity | None:
         if compare_digest(digest(token), digest(self._token)):
             return SHELL
-        return self._see(self.devices.find(token, "program"))
+        return self._see(self.devices.find(token, "program", "lab"))
 
     def _see(self, device: Device | None) -> Identity | None:
         if device is None:

@@ -1,4 +1,4 @@
-"""Browsers, programs and reading links, with their roles: looked up in memory, stored in the database."""
+"""Browsers, programs, labs and reading links, with their roles: found in memory, stored in the database."""
 
 import asyncio
 import logging
@@ -73,7 +73,7 @@ class BrowserSecrets:
 
 @dataclass(slots=True)
 class Device:
-    """A paired browser or program, or a reading link, as in DeviceRow.
+    """A paired browser or program, a lab, or a reading link, as in DeviceRow.
 
     `page_secret` is a digest. `stored` is the last visit in the database, `used` the last one since this
     server began (s, steady clock). `stored_role` is the role in the database.
@@ -134,7 +134,7 @@ class Devices:
                     self._keep(row.id, row)
 
     def all(self) -> list[Device]:
-        """Return all browsers and programs, by number."""
+        """Return all browsers, programs and labs, by number."""
         return [device for _, device in sorted(self._devices.items()) if device.kind != "reader"]
 
     def links(self, session: int) -> list[Device]:
@@ -142,7 +142,7 @@ class Devices:
         return [device for _, device in sorted(self._devices.items()) if device.session == session]
 
     def get(self, number: int) -> Device:
-        """Return the browser or program of this number. Raise UnknownDeviceError."""
+        """Return the browser, program or lab of this number. Raise UnknownDeviceError."""
         device = self._devices.get(number)
         if device is None or device.kind == "reader":
             raise UnknownDeviceError(number)
@@ -238,6 +238,12 @@ class Devices:
             self._refuse_same(name, self._list_names())
             return await self._add(name, role, "program", limited=scope != "administer", ends=ends)
 
+    async def add_lab(self, name: str) -> tuple[Device, str]:
+        """Add a lab; return it and its token, which is not stored and never ends. Raise as `add_program`."""
+        async with self._naming:
+            self._refuse_same(name, self._list_names())
+            return await self._add(name, "viewer", "lab", limited=True)
+
     async def add_link(self, session: int, ends: float) -> tuple[Device, str]:
         """Add a reading link of a session; return it and its token, which is not stored.
 
@@ -278,7 +284,7 @@ class Devices:
         # Links are limited by session: however many there are, a browser can be signed in.
         if kind != "reader" and len(self.all()) >= DEVICES_MAX:
             raise RefusedError(f"{DEVICES_MAX} devices are paired already. Revoke those that nobody uses.")
-        secret = secret or make_token(TOKEN_PREFIX if kind == "program" else "")
+        secret = secret or make_token(TOKEN_PREFIX if kind in ("program", "lab") else "")
         now = self._utc()
         row = DeviceRow(
             name=name,
@@ -319,7 +325,7 @@ class Devices:
             device.name = name
 
     def _list_names(self, but: int | None = None) -> list[str]:
-        """Return the names of the shell and of all browsers and programs but this one."""
+        """Return the names of the shell and of all browsers, programs and labs but this one."""
         return [SHELL.name, *(device.name for device in self.all() if device.id != but)]
 
     @staticmethod
@@ -404,4 +410,7 @@ def _secrets_of_link(token: str) -> BrowserSecrets:
 def _kind_of(row: DeviceRow) -> Kind:
     if row.session_id is not None:
         return "reader"
-    return "program" if row.kind == "program" else "browser"
+    match row.kind:
+        case "program" | "lab" as kind:
+            return kind
+    return "browser"

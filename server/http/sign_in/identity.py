@@ -9,7 +9,7 @@ from starlette.requests import HTTPConnection
 from server.platform.audit_file import SHELL_NAME
 
 Role = Literal["viewer", "operator"]
-Kind = Literal["browser", "program", "reader", "shell"]
+Kind = Literal["browser", "program", "lab", "reader", "shell"]
 Scope = Literal["read", "operate", "administer"]
 """Rights of a token: those of a viewer; of an operator who does not administer; of an operator."""
 
@@ -21,8 +21,9 @@ SIGN_IN_ENDED = "sign_in_ended"
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """A caller. `device` is the number of the browser, program or reading link; 0 is the shell.
+    """A caller. `device` is the number of the browser, program, lab or reading link; 0 is the shell.
 
+    A lab is one that this robot has joined: a viewer who may fetch sessions into an archive.
     `limited` is a program that may not administer, also not as an operator. `session` is the one session that
     a reader may read; None for all others.
     """

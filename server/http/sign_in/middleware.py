@@ -109,7 +109,9 @@ def _is_api(path: str) -> bool:
 def _foreign(connection: HTTPConnection, identity: Identity) -> str | None:
     """Return the reason why a foreign page may have caused this request of a browser."""
     socket = connection.scope["type"] == "websocket"
-    if identity.kind in ("program", "shell") or (not socket and connection.scope["method"] in SAFE_METHODS):
+    if identity.kind in ("program", "lab", "shell") or (
+        not socket and connection.scope["method"] in SAFE_METHODS
+    ):
         return None
     if "origin" not in connection.headers:
         return "A browser must name the page that asks (Origin). Open this server's own page."

@@ -71,7 +71,7 @@ def list_refused(routes: Iterable[BaseRoute], identity: Identity) -> list[str]:
     do not read the session."""
     needs = list_needs(routes)
     if identity.session is None:
-        return [name for name, need in needs.items() if need is not None and need >= Need.OPERATOR]
+        return [name for name, need in needs.items() if need is not None and need > Need.VIEWER]
     contexts = iter_route_contexts([*routes])
     readable = {route.operation_id for route in contexts if _is_for_readers(route)}
     return [name for name in needs if name not in readable]
@@ -102,7 +102,9 @@ def refusal(identity: Identity | None, need: Need | None) -> str | None:
         return None
     if identity is None:
         return "You are not signed in."
-    if need >= Need.OPERATOR and identity.role != "operator":
+    if need == Need.ARCHIVE and identity.kind == "lab":
+        return None
+    if need > Need.VIEWER and identity.role != "operator":
         return "This needs the role of an operator; you are a viewer. Ask an operator to make you one."
     if need == Need.ADMINISTER and identity.limited:
         return "This needs a token with the scope “administer”, or an operator's browser."

@@ -5,7 +5,9 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
+from secrets import token_hex
 from tempfile import TemporaryDirectory
+from threading import Event
 from typing import Any
 
 import httpx
@@ -17,48 +19,33 @@ from server.features.exports.imports import Imports
 from server.features.lab import pull as pull_module
 from server.features.lab import robot_client
 from server.features.lab.pull import SessionPull
-from server.health.monitor import HealthMonitor
+from server.http.pinned_requests import UnreachableError
+from server.http.sign_in.access import Access
+from server.http.sign_in.identity import SHELL
 from server.library.bookmarks import Bookmarks
 from server.library.catalogue import Catalogue
 from server.library.content import Recording
 from server.platform.database_copies import sum_file
 from server.platform.disk_space import FileWriteError
 from server.platform.models import Chunk
+from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Store
-from tests.server.blocks import depth_block, film_block, state_block
+from tests.server.blocks import depth_block, film_block
 from tests.server.features.exports.recordings import record_batches
 from tests.server.features.lab.labs import ServedLab, serve_lab
+from tests.server.features.lab.pulled_robot import PulledRobot, saying_state
 from tests.server.postgres import new_archive
 from tests.server.serving import Served, serve
 from tests.server.waiting import SECONDS, until
 
 
-class PulledRobot(Served):
-    """A running robot whose runtime says every half second whether it is armed."""
-
-    armed = False
-
-    async def say_state(self) -> None:
-        """Say it for ever."""
-        number = 0
-        while True:
-            number += 1
-            now = self.container.clock.now()
-            self.runtime.publish(state_block(number, time=now, armed=self.armed))
-            await asyncio.sleep(0.5)
-
-
 @pytest.fixture
 async def robot(settings: Settings) -> AsyncIterator[PulledRobot]:
     """A disarmed robot with a recorded session of two minutes, with a film."""
-    async with serve(settings) as served:
-        robot = PulledRobot(**vars(served))
-        saying = asyncio.create_task(robot.say_state())
-        await tell(robot, armed=False)
+    async with serve(settings) as served, saying_state(served) as robot:
         await record(robot, "first")
         yield robot
-        saying.cancel()
 
 
 @asynccontextmanager
@@ -71,12 +58,6 @@ async def lab_of(settings: Settings, archive: str = "") -> AsyncIterator[ServedL
             yield lab
 
 
-async def tell(robot: PulledRobot, *, armed: bool) -> None:
-    """Arm or disarm the robot, and wait until its server knows."""
-    monitor, robot.armed = robot.get(HealthMonitor), armed
-    await until(lambda: (monitor.state() or {}).get("armed") is armed, "the state")
-
-
 async def record(served: Served, name: str) -> int:
     """Record a session of two minutes in twelve chunks, with a film, a bookmark and a tag."""
     batches = [[depth_block(500 * part, 500)] for part in range(12)]
@@ -87,21 +68,22 @@ async def record(served: Served, name: str) -> int:
     return session
 
 
-async def introduce(lab: ServedLab, robot: PulledRobot, token: str = "") -> None:
-    """Have the lab pull from a robot."""
-    made = await robot.api.post(
-        "/access/tokens", json={"name": f"lab {id(lab)}", "scope": "operate", "days": 30}
-    )
-    url = f"http://127.0.0.1:{robot.settings.server.port}"
-    body = {"name": "turtle", "url": url, "token": token or made.json()["token"]}
-    (await lab.api.post("/lab/robots", json=body)).raise_for_status()
+def url_of(robot: PulledRobot) -> str:
+    return f"http://127.0.0.1:{robot.settings.server.port}"
+
+
+async def introduce(lab: ServedLab, robot: PulledRobot, **values: str) -> None:
+    """Have a robot join the lab, as by a code."""
+    _, token = await robot.get(Access).make_lab(f"Lab {token_hex(4)}", SHELL)
+    joined = {"name": "tested", "address": url_of(robot), "fingerprint": "", "token": token} | values
+    await asyncio.to_thread(lab.get(PairedRobots).add, PairedRobot(**joined, joined=0.0))
 
 
 async def see(lab: ServedLab, phase: str) -> dict[str, Any]:
     """Wait until the pull from the one robot is in a phase; return its description."""
     pull = lab.get(SessionPull)
     await until(lambda: [robot.phase for robot in pull.listed()] == [phase], f"the phase {phase}")
-    (robot,) = (await lab.api.get("/lab/robots")).json()
+    (robot,) = (await lab.api.get("/lab/pulls")).json()
     assert isinstance(robot, dict)
     return robot
 
@@ -149,12 +131,12 @@ async def test_nothing_comes_twice_not_even_what_was_purged(robot: PulledRobot) 
 
 
 async def test_an_armed_robot_is_left_alone(robot: PulledRobot) -> None:
-    await tell(robot, armed=True)
+    await robot.tell(armed=True)
     async with lab_of(robot.settings) as lab:
         await introduce(lab, robot)
         assert (await see(lab, "armed"))["lacking"] == 1
         assert (await robot.api.get("/exports")).json() == []
-        await tell(robot, armed=False)
+        await robot.tell(armed=False)
         lab.get(SessionPull).wake()
         await see(lab, "done")
 
@@ -164,15 +146,15 @@ async def test_a_download_goes_on_where_it_broke_off(
 ) -> None:
     received: list[int] = []
 
-    def break_off(answer: Any) -> bytes:
+    def break_off(_: str, answer: Any, __: int) -> bytes:
         if received and not healed:
-            raise robot_client.RobotAnswerError("The connection broke.")
+            raise UnreachableError("The connection broke.")
         piece = answer.read(1000)
         received.append(len(piece))
         return bytes(piece)
 
     healed = False
-    monkeypatch.setattr(robot_client, "_receive", break_off)
+    monkeypatch.setattr(robot_client, "read_piece", break_off)
     async with lab_of(robot.settings) as lab:
         await introduce(lab, robot)
         assert "broke" in (await see(lab, "unreachable"))["text"]
@@ -234,17 +216,49 @@ async def test_a_full_disk_a_wrong_token_and_a_robot_that_is_away_are_said(
         await introduce(lab, robot)
         assert "1 MB free" in (await see(lab, "failed"))["text"]
         monkeypatch.undo()
-        (known,) = (await lab.api.get("/lab/robots")).json()
-        await lab.api.delete(f"/lab/robots/{known['id']}")
-        await introduce(lab, robot, token="mucat_wrong")
-        assert "sign" in (await see(lab, "failed"))["text"]
-        again = await lab.api.post("/lab/robots", json={"name": "turtle", "url": "http://x", "token": "t"})
-        assert (again.status_code, "already" in again.json()["detail"]) == (409, True)
-        (known,) = (await lab.api.get("/lab/robots")).json()
-        await lab.api.delete(f"/lab/robots/{known['id']}")
-        body = {"name": "away", "url": "http://127.0.0.1:1", "token": "t"}
-        await lab.api.post("/lab/robots", json=body)
-        assert "does not answer" in (await see(lab, "unreachable"))["text"]
+        robots = lab.get(PairedRobots)
+        for phase, said, values in (
+            ("failed", "lets this lab in no more", {"token": "mucat_wrong"}),
+            ("unreachable", "does not answer", {"address": "http://127.0.0.1:1"}),
+            ("unreachable", "open to no other computer", {"address": ""}),
+        ):
+            await asyncio.to_thread(robots.remove, "tested")
+            await introduce(lab, robot, **values)
+            assert said in (await see(lab, phase))["text"]
+
+
+async def test_a_robot_that_has_moved_is_pulled_from_at_its_new_address(robot: PulledRobot) -> None:
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot, address="http://127.0.0.1:1")
+        await see(lab, "unreachable")
+        await asyncio.to_thread(lab.get(PairedRobots).move, "tested", url_of(robot), "")
+        assert (await see(lab, "done"))["sessions"] == 1
+
+
+async def test_the_pull_from_a_robot_ends_with_its_removal(
+    robot: PulledRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, removed = Event(), Event()
+
+    def read_slowly(_: str, answer: Any, __: int) -> bytes:
+        begun.set()
+        assert removed.wait(SECONDS)
+        return bytes(answer.read(100))
+
+    monkeypatch.setattr(robot_client, "read_piece", read_slowly)
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        assert await asyncio.to_thread(begun.wait, SECONDS)
+        (pulled,) = (await lab.api.get("/lab/pulls")).json()
+        assert (pulled["phase"], pulled["lacking"]) == ("pulling", 1)
+        (await lab.api.delete("/robots/tested")).raise_for_status()
+        removed.set()
+        pulls = lab.container.settings.data.pulls
+        await until(lambda: not pulls.exists(), "the end of the download")
+        assert (await lab.api.get("/lab/pulls")).json() == []
+        assert (await lab.api.get("/sessions")).json() == []
+        devices = robot.get(Access).devices
+        await until(lambda: [device.kind for device in devices.all()] == [], "the end of the token")
 
 
 async def test_two_labs_pull_from_one_robot(robot: PulledRobot) -> None:
@@ -256,6 +270,31 @@ async def test_two_labs_pull_from_one_robot(robot: PulledRobot) -> None:
                 while len((await lab.api.get("/sessions")).json()) < 1:
                     lab.get(SessionPull).wake()
                     await asyncio.sleep(0.05)
+        # What one of them removes stays at the other, and on the robot.
+        (here,) = (await first.api.get("/sessions")).json()
+        await first.api.delete(f"/sessions/{here['id']}")
+        for place in (second, robot):
+            assert len((await place.api.get("/sessions")).json()) == 1
+
+
+async def test_a_lab_reads_stops_and_fetches_and_does_nothing_else(robot: PulledRobot) -> None:
+    device, token = await robot.get(Access).make_lab("Lab", SHELL)
+    headers = {"authorization": f"Bearer {token}"}
+    async with httpx.AsyncClient(base_url=robot.api.base_url, headers=headers) as lab:
+        for method, path, body, status in (
+            ("GET", "/robot", None, 200),
+            ("POST", "/robot/stop", None, 204),
+            ("POST", "/sessions/archived", {"identifiers": ["0" * 32]}, 204),
+            ("DELETE", f"/exports/{'0' * 16}", None, 404),
+            ("POST", "/control/take", None, 403),
+            ("PATCH", "/sessions/1", {"name": "mine"}, 403),
+            ("DELETE", "/sessions/1", None, 403),
+            ("POST", "/access/codes", {}, 403),
+        ):
+            answer = await lab.request(method, path, json=body)
+            assert answer.status_code == status, path
+    promoted = await robot.api.patch(f"/access/devices/{device.id}", json={"role": "operator"})
+    assert (promoted.status_code, "is a lab" in promoted.json()["detail"]) == (409, True)
 
 
 async def test_a_token_that_only_reads_cannot_say_that_sessions_are_archived(robot: PulledRobot) -> None:

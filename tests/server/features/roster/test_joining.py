@@ -5,7 +5,7 @@ import json
 from collections.abc import AsyncIterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import httpx
 import pytest
@@ -14,8 +14,14 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.config import RobotConfig
 from robot_runtime.contract.topics import STATE
 from robot_runtime.transport.blocks import Block
+from server.features.membership import presence_source
+from server.features.membership.presence_source import PresenceSource
 from server.features.roster.joining_codes import JoiningCodes, LabWithoutTlsError
 from server.platform.settings import Settings
+from server.platform.store import Store
+from tests.server.blocks import depth_block
+from tests.server.features.exports.recordings import record_batches
+from tests.server.features.lab.pulled_robot import saying_state
 from tests.server.features.roster.served_lab import RosterLab, serve_lab
 from tests.server.ports import reserved_port
 from tests.server.serving import Served, serve
@@ -63,7 +69,7 @@ async def test_a_robot_joins_is_seen_stopped_and_leaves(lab: RosterLab, robot: S
     assert answers == [{"name": "turtle-1", "stopped": True, "zenoh": "", "https": ""}]
     assert {name for name, _ in robot.runtime.asked[asked:]} == {"stop"}
 
-    device = next(d for d in (await robot.api.get("/access/devices")).json() if d["kind"] == "program")
+    device = next(d for d in (await robot.api.get("/access/devices")).json() if d["kind"] == "lab")
     assert (device["role"], device["name"]) == ("viewer", "Lab 127.0.0.1")
     assert (await robot.api.delete("/lab")).json() == {"notified": True}
     async with asyncio.timeout(SECONDS):
@@ -71,6 +77,19 @@ async def test_a_robot_joins_is_seen_stopped_and_leaves(lab: RosterLab, robot: S
             await asyncio.sleep(0.02)
     assert (await robot.api.get("/access/devices")).json() == []
     assert not robot.settings.data.membership.exists()
+
+
+async def test_joining_is_all_that_the_lab_s_archive_needs(lab: RosterLab, robot: Served) -> None:
+    session = await record_batches(robot.get(Store), robot.settings, [depth_block(0, 500)], name="dive")
+    async with saying_state(robot):
+        (await join(robot, await lab.code())).raise_for_status()
+        async with asyncio.timeout(SECONDS):
+            while [pull["phase"] for pull in (await lab.api.get("/lab/pulls")).json()] != ["done"]:
+                await asyncio.sleep(0.02)
+    (pull,) = (await lab.api.get("/lab/pulls")).json()
+    assert (pull["robot"], pull["sessions"], pull["lacking"]) == ("turtle-1", 1, 0)
+    assert [dive["name"] for dive in (await lab.api.get("/sessions")).json()] == ["dive"]
+    assert (await robot.api.get(f"/sessions/{session}")).json()["archived"] is not None
 
 
 async def test_a_robot_that_is_removed_loses_its_way_and_the_lab_its_token(
@@ -142,3 +161,42 @@ async def test_a_lab_without_tls_makes_no_code(lab: RosterLab) -> None:
     bare = lab.settings.with_section(replace(lab.settings.server, tls=False))
     with pytest.raises(LabWithoutTlsError, match=r"server\.tls = true"):
         JoiningCodes(bare, SteadyClock()).make("lab")
+
+
+async def test_a_robot_that_is_renamed_stays_in_the_lab_by_the_name_it_joined_with(
+    lab: RosterLab, settings: Settings
+) -> None:
+    settings = settings.with_section(replace(settings.server, tls=True))
+    for name in ("turtle-1", "anna"):
+        async with serve(replace(settings, robot=RobotConfig(name=name))) as robot:
+            if name == "turtle-1":
+                (await join(robot, await lab.code())).raise_for_status()
+            address = f"https://localhost:{robot.settings.server.port}"
+            seen = await lab.see("the robot at its present address", address=address)
+            assert seen["name"] == "turtle-1"
+
+
+async def test_a_robot_in_a_lab_joins_no_second_one(lab: RosterLab, robot: Served, tmp_path: Path) -> None:
+    (await join(robot, await lab.code())).raise_for_status()
+    with reserved_port() as port:
+        async with serve_lab(tmp_path / "second", port) as second:
+            refused = await join(robot, await second.code())
+            assert (refused.status_code, "Leave it first" in refused.json()["detail"]) == (409, True)
+            assert await second.robots() == []
+
+
+def test_a_robot_tells_the_lab_its_address_in_the_lab_s_network(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def address(lab: str, **server: Any) -> str:
+        there = settings.with_section(replace(settings.server, port=80, **server))
+        return PresenceSource(there, *[cast("Any", None)] * 3).address_for(lab)
+
+    monkeypatch.setattr(presence_source, "_own_address", lambda _: "10.0.0.7")
+    assert address("https://192.0.2.1:8000") == ""
+    assert address("https://localhost:8000") == "http://localhost:80"
+    names = ["localhost", "10.0.0.5"]
+    assert address("https://192.0.2.1", host="10.0.0.5", allowed_hosts=names) == "http://10.0.0.5:80"
+    # Its network has given it another address since the start.
+    assert address("https://192.0.2.1", host="0.0.0.0", allowed_hosts=names) == "http://10.0.0.7:80"
+    assert address("https://192.0.2.1", public_url="https://robots.lab") == "https://robots.lab"
