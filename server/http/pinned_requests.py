@@ -115,8 +115,11 @@ def open_answer(
         try:
             connection.connect()
             connection.sock.settimeout(seconds)
-            secure = isinstance(connection, HTTPSConnection)
-            if secure and is_meant is not None and not is_meant(_fingerprint(connection)):
+            if (
+                isinstance(connection, HTTPSConnection)
+                and is_meant is not None
+                and not is_meant(_fingerprint(connection))
+            ):
                 raise UnreachableError(
                     f"The server at {address} has another certificate than the one that is meant. Somebody "
                     "may stand between, or the server was set up anew."
@@ -150,7 +153,7 @@ def _connection(address: SplitResult, seconds: float, trusted: bool) -> HTTPConn
     return HTTPSConnection(host, port, timeout=seconds, context=context)
 
 
-def _fingerprint(connection: HTTPConnection) -> str:
+def _fingerprint(connection: HTTPSConnection) -> str:
     certificate = connection.sock.getpeercert(binary_form=True)
     return fingerprint_of(certificate or b"")
 

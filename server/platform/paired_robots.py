@@ -60,12 +60,12 @@ class PairedRobots:
         self._file: Path = folder.paired_robots
         self._robots: dict[str, PairedRobot] = {}
         self._changing = threading.Lock()
-        self._listeners: list[Callable[[], None]] = []
+        self._listeners: list[Callable[[], object]] = []
         if self._file.exists():
             entries = json.loads(self._file.read_bytes())
             self._robots = {entry["name"]: PairedRobot(**entry) for entry in entries}
 
-    def listen(self, changed: Callable[[], None]) -> None:
+    def listen(self, changed: Callable[[], object]) -> None:
         """Have a function called after each change, in the thread of the change."""
         self._listeners.append(changed)
 

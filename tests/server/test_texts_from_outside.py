@@ -240,7 +240,6 @@ READ_THEIR_OWN = {
     "server/features/installation/report.py",
     "server/features/installation/units/__init__.py",
     "server/features/installation/updater.py",
-    "server/features/lab/robot_client.py",
     "server/features/panels/frame.py",
     "server/features/roster/roster.py",
     "server/features/scenarios/live_setup.py",

@@ -217,14 +217,14 @@ async def test_a_full_disk_a_wrong_token_and_a_robot_that_is_away_are_said(
         assert "1 MB free" in (await see(lab, "failed"))["text"]
         monkeypatch.undo()
         robots = lab.get(PairedRobots)
-        for phase, said, values in (
+        for phase, reason, values in (
             ("failed", "lets this lab in no more", {"token": "mucat_wrong"}),
             ("unreachable", "does not answer", {"address": "http://127.0.0.1:1"}),
             ("unreachable", "open to no other computer", {"address": ""}),
         ):
             await asyncio.to_thread(robots.remove, "tested")
             await introduce(lab, robot, **values)
-            assert said in (await see(lab, phase))["text"]
+            assert reason in (await see(lab, phase))["text"]
 
 
 async def test_a_robot_that_has_moved_is_pulled_from_at_its_new_address(robot: PulledRobot) -> None:
@@ -273,8 +273,8 @@ async def test_two_labs_pull_from_one_robot(robot: PulledRobot) -> None:
         # What one of them removes stays at the other, and on the robot.
         (here,) = (await first.api.get("/sessions")).json()
         await first.api.delete(f"/sessions/{here['id']}")
-        for place in (second, robot):
-            assert len((await place.api.get("/sessions")).json()) == 1
+        for server in (second, robot):
+            assert len((await server.api.get("/sessions")).json()) == 1
 
 
 async def test_a_lab_reads_stops_and_fetches_and_does_nothing_else(robot: PulledRobot) -> None:
