@@ -118,6 +118,22 @@ def unshuffle(shuffled: bytes, size: int) -> bytes:
     return bytes(rows)
 
 
+def join_shuffled(parts: Sequence[bytes], size: int) -> bytes:
+    """Return the shuffled rows of all parts, each of which holds shuffled rows of `size` bytes."""
+    counts = [len(part) // size for part in parts]
+    return b"".join(
+        part[index * count : (index + 1) * count]
+        for index in range(size)
+        for part, count in zip(parts, counts, strict=True)
+    )
+
+
+def shuffled_times(shuffled: bytes, size: int) -> tuple[float, ...]:
+    """Return the times, s, of shuffled rows of `size` bytes, each of which begins with its time."""
+    count = len(shuffled) // size
+    return Struct(f"<{count}d").unpack(unshuffle(shuffled[: count * TIME.size], TIME.size))
+
+
 def unpack(data: bytes, limit: int = CHUNK_BYTES_MAX) -> bytes:
     """Return the unpacked bytes of a chunk. Raise ValueError where it is damaged or larger than `limit`."""
     unpacker = zlib.decompressobj()

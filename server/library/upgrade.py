@@ -3,13 +3,13 @@
 A document that lacks a required number is left out. In rows, which cannot express "unknown", it is 0.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import MISSING, asdict, dataclass, fields
 from math import copysign, inf, isnan
 from struct import Struct, calcsize
 from typing import Any
 
-from robot_runtime.contract.hints import Hint, read_fields, read_hint
+from robot_runtime.contract.hints import Form, Hint, read_fields, read_hint
 from robot_runtime.contract.packets.layout import Record
 from robot_runtime.contract.topics import TIME, AnyTopic
 
@@ -107,29 +107,59 @@ def rewrite_document(document: Mapping[str, Any], topic: AnyTopic) -> dict[str, 
 
 
 def _rewrite(value: Any, hint: Hint) -> Any:
-    match hint.form, value:
-        case "object", _:
-            return _rewrite_object(value, hint.cls)
-        case "union", _:
-            return _rewrite_union(value, hint.parts)
-        case "list", list():
-            return [_rewrite(item, hint.parts[0]) for item in value]
-        case "tuple", list() if len(hint.parts) == len(value):
-            return [_rewrite(item, part) for item, part in zip(value, hint.parts, strict=True)]
-        case "table", dict():
-            return {name: _rewrite(item, hint.parts[0]) for name, item in value.items()}
-        case "choice", _ if value in hint.choices:
-            return value
-        case "number", int() | float() if not isinstance(value, bool):
-            return value
-        case "whole number" | "text" | "switch" | "nothing", _ if type(value) is hint.cls:
-            return value
-    raise NoCounterpartError(f"{value!r} is no {hint.form}")
+    # A dive has a million values: the forms are told apart by a table.
+    return _REWRITERS[hint.form](value, hint)
 
 
-def _rewrite_union(value: Any, members: tuple[Hint, ...]) -> Any:
+def _rewrite_list(value: Any, hint: Hint) -> Any:
+    if not isinstance(value, list):
+        raise _refuse(value, hint)
+    part = hint.parts[0]
+    rewrite = _REWRITERS[part.form]
+    return [rewrite(item, part) for item in value]
+
+
+def _rewrite_tuple(value: Any, hint: Hint) -> Any:
+    if not isinstance(value, list) or len(hint.parts) != len(value):
+        raise _refuse(value, hint)
+    return [_rewrite(item, part) for item, part in zip(value, hint.parts, strict=True)]
+
+
+def _rewrite_table(value: Any, hint: Hint) -> Any:
+    if not isinstance(value, dict):
+        raise _refuse(value, hint)
+    return {name: _rewrite(item, hint.parts[0]) for name, item in value.items()}
+
+
+def _rewrite_choice(value: Any, hint: Hint) -> Any:
+    if value not in hint.choices:
+        raise _refuse(value, hint)
+    return value
+
+
+def _rewrite_number(value: Any, hint: Hint) -> Any:
+    if type(value) is not float and type(value) is not int:
+        raise _refuse(value, hint)
+    return value
+
+
+def _rewrite_exactly(value: Any, hint: Hint) -> Any:
+    if type(value) is not hint.cls:
+        raise _refuse(value, hint)
+    return value
+
+
+def _refuse_all(value: Any, hint: Hint) -> Any:
+    raise _refuse(value, hint)
+
+
+def _refuse(value: Any, hint: Hint) -> NoCounterpartError:
+    return NoCounterpartError(f"{value!r} is no {hint.form}")
+
+
+def _rewrite_union(value: Any, hint: Hint) -> Any:
     problem: NoCounterpartError | None = None
-    for member in members:
+    for member in hint.parts:
         try:
             return _rewrite(value, member)
         except NoCounterpartError as refusal:
@@ -138,12 +168,13 @@ def _rewrite_union(value: Any, members: tuple[Hint, ...]) -> Any:
     raise problem or NoCounterpartError(f"{value!r} is of no kind")
 
 
-def _rewrite_object(value: Any, target: Any) -> dict[str, Any]:
+def _rewrite_object(value: Any, hint: Hint) -> dict[str, Any]:
+    target: Any = hint.cls
     if not isinstance(value, Mapping):
         raise NoCounterpartError(f"{value!r} is no {target.__name__}")
     return {
-        name: _rewrite(value[name], hint) if name in value else _stand_in(target, name, hint)
-        for name, hint in read_fields(target).items()
+        name: _rewrite(value[name], field) if name in value else _stand_in(target, name, field)
+        for name, field in read_fields(target).items()
     }
 
 
@@ -160,3 +191,19 @@ def _stand_in(owner: Any, name: str, hint: Hint) -> Any:
     if hint.form == "text":
         return ""
     raise MissingFieldError(f"{name} is missing")
+
+
+_REWRITERS: dict[Form, Callable[[Any, Hint], Any]] = {
+    "object": _rewrite_object,
+    "union": _rewrite_union,
+    "list": _rewrite_list,
+    "tuple": _rewrite_tuple,
+    "table": _rewrite_table,
+    "choice": _rewrite_choice,
+    "number": _rewrite_number,
+    "whole number": _rewrite_exactly,
+    "text": _rewrite_exactly,
+    "switch": _rewrite_exactly,
+    "nothing": _rewrite_exactly,
+    "class": _refuse_all,
+}

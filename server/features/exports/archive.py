@@ -1,15 +1,11 @@
 """Writes the archive of a session: `robot_runtime.contract.archive` has its format."""
 
-import hashlib
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any, BinaryIO
 
 from sqlmodel import SQLModel, col, select
 
 from robot_runtime.contract.archive import (
-    CHECKSUMS,
     CHUNKS,
     FORMAT,
     SESSION,
@@ -17,7 +13,7 @@ from robot_runtime.contract.archive import (
     pack_chunk,
 )
 from server.features.exports.selection import ExportRequestError, ExportSelection
-from server.features.exports.zip_stream import ZipWriter
+from server.features.exports.summed_members import SummedMembers
 from server.platform.models import BookmarkRow, Gap, SessionTag
 from server.platform.store import Reader
 
@@ -36,32 +32,6 @@ def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> N
             for chunk in source.chunks(name):
                 write(pack_chunk(chunk))
     members.close()
-
-
-class SummedMembers:
-    """Members of the zip file, and their checksums."""
-
-    def __init__(self, output: BinaryIO) -> None:
-        self._packing = ZipWriter(output, packed=False)
-        self._sums: dict[str, str] = {}
-
-    @contextmanager
-    def member(self, name: str) -> Iterator[Any]:
-        """Open a member; yield the function that writes it."""
-        checksum = hashlib.sha256()
-        with self._packing.member(name) as file:
-
-            def write(data: bytes) -> None:
-                checksum.update(data)
-                file.write(data)
-
-            yield write
-        self._sums[name] = checksum.hexdigest()
-
-    def close(self) -> None:
-        """Write the checksums, and end the file."""
-        self._packing.text(CHECKSUMS, json.dumps(self._sums, indent=1))
-        self._packing.close()
 
 
 def _describe(store: Reader, source: ExportSelection) -> dict[str, Any]:

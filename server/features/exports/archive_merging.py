@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from robot_runtime.contract.archive import CHUNKS, SESSION, pack_chunk
-from robot_runtime.contract.chunks import StoredChunk, decode_rows, shuffle, unpack
-from server.features.exports.archive import SummedMembers
+from robot_runtime.contract.chunks import StoredChunk, join_shuffled, unpack, unpack_rows
 from server.features.exports.archive_models import ArchivedTopic
 from server.features.exports.archive_reader import Archive, ArchiveError, open_archive
+from server.features.exports.summed_members import SummedMembers
 
 SECONDS = 60.0
 BYTES_MAX = 4_000_000
@@ -39,17 +39,17 @@ def merge(chunks: Iterable[StoredChunk], topic: ArchivedTopic) -> Iterator[Store
 
     Pictures and films stay as they are: what is shown of them is read by the chunk.
     """
-    number = 0
+    number = size = 0
     group = list[StoredChunk]()
     unpacked = list[bytes]()
     for chunk in chunks:
         payload = b"" if topic.kind in ("picture", "film") else _unpack(chunk, topic)
-        size = sum(len(part) for part in unpacked) + len(payload)
-        if group and (not payload or not _follows(group, chunk) or size > BYTES_MAX):
+        if group and (not payload or not _follows(group, chunk) or size + len(payload) > BYTES_MAX):
             yield _join(group, unpacked, topic, number)
-            number, group, unpacked = number + 1, [], []
+            number, group, unpacked, size = number + 1, [], [], 0
         group.append(chunk)
         unpacked.append(payload)
+        size += len(payload)
     if group:
         yield _join(group, unpacked, topic, number)
 
@@ -62,14 +62,14 @@ def _follows(group: list[StoredChunk], chunk: StoredChunk) -> bool:
 
 
 def _unpack(chunk: StoredChunk, topic: ArchivedTopic) -> bytes:
-    return decode_rows(chunk.data, topic.row_bytes) if topic.kind == "rows" else unpack(chunk.data)
+    return unpack_rows(chunk.data, topic.row_bytes) if topic.kind == "rows" else unpack(chunk.data)
 
 
 def _join(group: list[StoredChunk], unpacked: list[bytes], topic: ArchivedTopic, number: int) -> StoredChunk:
     first, last = group[0], group[-1]
     if len(group) == 1:
         return replace(first, number=number)
-    whole = b"".join(unpacked)
-    data = zlib.compress(shuffle(whole, topic.row_bytes) if topic.kind == "rows" else whole, LEVEL)
+    whole = join_shuffled(unpacked, topic.row_bytes) if topic.kind == "rows" else b"".join(unpacked)
+    data = zlib.compress(whole, LEVEL)
     count = sum(chunk.count for chunk in group)
     return replace(first, number=number, last_time=last.last_time, count=count, data=data)

@@ -10,12 +10,13 @@ from robot_runtime.contract.chunks import (
     CHUNK_BYTES_MAX,
     StoredChunk,
     decode_pictures,
-    decode_rows,
     require_encoding,
+    shuffled_times,
     unpack,
+    unpack_rows,
 )
 from robot_runtime.contract.documents import Event
-from robot_runtime.contract.topics import BY_NAME, TIME, Kind
+from robot_runtime.contract.topics import BY_NAME, Kind
 from server.features.exports.archive_models import ArchivedTopic
 from server.library.upgrade import MissingFieldError, rewrite_document
 
@@ -30,7 +31,7 @@ def check_chunk(chunk: StoredChunk, name: str, topic: ArchivedTopic, origin: flo
     times = _read_times(chunk, name, topic)
     if len(times) != chunk.count:
         raise ValueError(f"it holds {len(times)} samples instead of {chunk.count}")
-    if not all(isfinite(time) and abs(time - origin) <= SPAN_MAX for time in times):
+    if not all(map(isfinite, times)) or max(origin - min(times), max(times) - origin) > SPAN_MAX:
         raise ValueError("a sample's time is far from the session's")
     if (times[0], times[-1]) != (chunk.first_time, chunk.last_time):
         raise ValueError("its samples have other times than it announces")
@@ -62,8 +63,8 @@ def _read_times(chunk: StoredChunk, name: str, topic: ArchivedTopic) -> Sequence
         return [time for time, _ in decode_pictures(chunk.data)]
     if topic.kind == "rows":
         announced = chunk.count * topic.row_bytes
-        rows = decode_rows(chunk.data, topic.row_bytes, min(CHUNK_BYTES_MAX, announced))
-        return [TIME.unpack_from(rows, index)[0] for index in range(0, len(rows), topic.row_bytes)]
+        shuffled = unpack_rows(chunk.data, topic.row_bytes, min(CHUNK_BYTES_MAX, announced))
+        return shuffled_times(shuffled, topic.row_bytes)
     return [_read_time(line, name, topic) for line in unpack(chunk.data).splitlines()]
 
 

@@ -1,5 +1,6 @@
 import json
 import math
+import struct
 import zlib
 
 import pytest
@@ -20,6 +21,18 @@ def test_shuffling_is_undone(size: int, count: int, random: object) -> None:
 
 def test_shuffling_groups_bytes_of_equal_place() -> None:
     assert chunks.shuffle(b"a1a2a3", 2) == b"aaa123"
+
+
+@given(st.lists(st.binary(max_size=60), max_size=5), st.integers(1, 12))
+def test_shuffled_parts_are_joined_as_their_rows_are(parts: list[bytes], size: int) -> None:
+    whole = [part[: len(part) // size * size] for part in parts]
+    joined = chunks.join_shuffled([chunks.shuffle(part, size) for part in whole], size)
+    assert joined == chunks.shuffle(b"".join(whole), size)
+
+
+def test_times_are_read_from_shuffled_rows() -> None:
+    rows = b"".join(struct.pack("<dh", time, 7) for time in (1.5, 2.25, -3.0))
+    assert chunks.shuffled_times(chunks.shuffle(rows, 10), 10) == (1.5, 2.25, -3.0)
 
 
 def test_incomplete_rows_are_refused() -> None:
