@@ -34,8 +34,9 @@ STORED_NAMES = frozenset(
 )
 """Fields of packets, columns and stored documents: they are in recordings and data folders, and stay."""
 
+DEFINITIONS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef, ast.arg)
 Modules = dict[str, list[ast.AST]]
-"""All nodes of each file."""
+"""Each file's nodes that define a name."""
 
 
 def find_bad_names(root: Path) -> list[str]:
@@ -54,9 +55,17 @@ def find_bad_names(root: Path) -> list[str]:
 def _parse(root: Path, packages: tuple[str, ...]) -> Modules:
     files = sorted(file for package in packages for file in (root / package).rglob("*.py"))
     return {
-        file.relative_to(root).as_posix(): list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+        file.relative_to(root).as_posix(): [
+            node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if _defines(node)
+        ]
         for file in files
     }
+
+
+def _defines(node: ast.AST) -> bool:
+    if isinstance(node, ast.Name | ast.Attribute):
+        return isinstance(node.ctx, ast.Store)
+    return isinstance(node, DEFINITIONS)
 
 
 def _repeated_classes(modules: Modules) -> Iterator[str]:
