@@ -39,7 +39,7 @@ from server.platform.models import PulledSessionRow, SessionRow
 from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder
 from server.platform.store import Store, StoreError
-from server.recording.session import HIDDEN
+from server.recording.session import HIDDEN, IMPORTING, REMOVING
 
 log = logging.getLogger(__name__)
 
@@ -167,6 +167,8 @@ class SessionPull:
         progress.lacking = sum(entry.identifier not in stored | pulled for entry in sessions)
         if progress.problems:
             progress.phase, progress.text = "failed", "Some of its sessions cannot be pulled."
+        elif progress.lacking:
+            progress.phase, progress.text = "waiting", "The rest of its sessions is pulled in some minutes."
         else:
             progress.phase, progress.text = "done", "All of its sessions are in the archive."
 
@@ -180,7 +182,9 @@ class SessionPull:
                 for identifier, state, deleted in database.exec(
                     columns.where(col(SessionRow.identifier).in_(some))
                 ):
-                    (here if state not in HIDDEN and deleted is None else gone).add(identifier)
+                    # An import that broke off with the database: another one removes it, and is made again.
+                    if state != IMPORTING:
+                        (here if state != REMOVING and deleted is None else gone).add(identifier)
                 those = col(PulledSessionRow.identifier).in_(some)
                 gone.update(database.exec(select(PulledSessionRow.identifier).where(those)))
         return here, gone - here

@@ -20,7 +20,8 @@ from server.platform.paired_robots import PairedRobot
 
 SECONDS = 20.0
 PAGE = 200
-PIECE_BYTES = 1 << 18
+PIECE_BYTES = 1 << 14
+"""Of a download: less than this is lost where the connection breaks."""
 PARTIAL = 206
 SIGNED_OUT = 401
 REVOKED = (
@@ -131,6 +132,8 @@ class RobotClient:
                     arrived(there)
                     if self._is_over():
                         raise PullStoppedError
+        if there != export.bytes:
+            raise RobotAnswerError("The connection broke. The rest is fetched later.")
 
     def remove_export(self, export: RobotsExport) -> None:
         """Remove an archive from the robot's disk."""
