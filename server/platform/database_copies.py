@@ -27,26 +27,39 @@ SUM_BYTES = 1 << 20
 
 
 def copy_database(
-    database: Path, path: Path, add: Callable[[sqlite3.Connection], object] = lambda _: None
+    location: Path | str, path: Path, add: Callable[[sqlite3.Connection], object] = lambda _: None
 ) -> None:
     """Copy a database as it is at this moment, checked by SQLite; only its owner may read the copy.
 
-    `add` stores more in the copy. The source is only read: its writer goes on meanwhile. Parts that
-    killed copies have left in that folder are removed. Raise sqlite3.DatabaseError, OSError; then there is
-    no copy.
+    `location` is a file of SQLite, or the URL of an archive in PostgreSQL; the copy is a file of SQLite.
+    `add` stores more in it. The source is only read: its writer goes on meanwhile. Parts that killed copies
+    have left in that folder are removed. Raise sqlite3.DatabaseError, OSError, and SetupError for an archive
+    that cannot be read; then there is no copy.
     """
+    with _new_copy(path) as copy:
+        if isinstance(location, str):
+            from server.platform.archive_copies import copy_archive
+
+            copy_archive(location, copy)
+        else:
+            with closing(open_database(location, "ro")) as source:
+                # In one step: one that is written to between two of them would be begun again, for ever.
+                source.backup(copy)
+        add(copy)
+
+
+@contextmanager
+def _new_copy(path: Path) -> Iterator[sqlite3.Connection]:
+    """Yield an empty database that comes to this path once it is filled and checked."""
     remove_abandoned(path.parent)
     with (
         # First: a part that somebody else writes must stay.
         _held(path.with_name(path.name + PART)),
         unfinished(path) as part,
-        closing(open_database(database, "ro")) as source,
         closing(sqlite3.connect(part)) as copy,
     ):
         copy.execute("PRAGMA synchronous = OFF")
-        # In one step: one that is written to between two of them would be begun again, for ever.
-        source.backup(copy)
-        add(copy)
+        yield copy
         # One file, which also a medium that cannot be written shows.
         copy.execute("PRAGMA journal_mode = DELETE")
         (result,) = copy.execute("PRAGMA integrity_check(1)").fetchone()
@@ -88,6 +101,13 @@ def _held(part: Path) -> Iterator[None]:
 def open_database(database: Path, mode: Literal["ro", "rw"]) -> sqlite3.Connection:
     """Open an existing database. Raise sqlite3.DatabaseError."""
     return sqlite3.connect(f"{database.absolute().as_uri()}?mode={mode}", uri=True)
+
+
+def describe_sessions(database: Path) -> str:
+    """Return the number of sessions in a file of SQLite, with the word. Raise sqlite3.DatabaseError."""
+    with closing(open_database(database, "ro")) as connection:
+        (sessions,) = connection.execute("SELECT count(*) FROM session").fetchone()
+    return "1 session" if sessions == 1 else f"{sessions} sessions"
 
 
 def new_copy_path(folder: DataFolder, kind: Kind, revision: str = "") -> Path:

@@ -156,13 +156,17 @@ def _make_shrinkable(database: Path) -> None:
 
 
 def _create(database: Path) -> None:
-    """Make the tables of a new database, all or none."""
+    with closing(sqlite3.connect(database, isolation_level=None)) as connection:
+        connection.execute("PRAGMA synchronous = FULL")
+        create_tables(connection)
+
+
+def create_tables(connection: sqlite3.Connection) -> None:
+    """Make the tables of a new database, all or none. Raise sqlite3.DatabaseError."""
     # The migrations would do the same in twenty times the time.
     tables = _NEW.read_text(encoding="utf-8")
-    with closing(sqlite3.connect(database, isolation_level=None)) as connection:
-        connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
-        connection.execute("PRAGMA synchronous = FULL")
-        connection.executescript(f"BEGIN IMMEDIATE;\n{tables}COMMIT;")
+    connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
+    connection.executescript(f"BEGIN IMMEDIATE;\n{tables}COMMIT;")
 
 
 def make_config() -> "Config":

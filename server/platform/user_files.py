@@ -5,7 +5,7 @@ sessions and leaves the table alone.
 """
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 
 from robot_runtime.durable_files import make_folder, write_whole
@@ -21,6 +21,7 @@ NAMES = (
     "craft-before.toml",
     "vision.json",
     "bring-up.html",
+    "robots.json",
     CONFIG,
 )
 """Files and folders of the data folder; the configuration may come from elsewhere."""
@@ -28,6 +29,8 @@ LEFT_OUT = (
     "Not in it: exported files, the audit log, and what is secret (the keys in tls and zenoh, and files of "
     "passwords that robot.toml names)."
 )
+LAB = "lab"
+"""An empty file in the backup of a lab. A lab says itself where its archive is."""
 FILE_BYTES_MAX = 50_000_000
 
 
@@ -38,6 +41,8 @@ def store_files(copy: sqlite3.Connection, folder: DataFolder, config: Path) -> l
     """
     copy.execute(f"DROP TABLE IF EXISTS {TABLE}")
     copy.execute(f"CREATE TABLE {TABLE} (name TEXT PRIMARY KEY, content BLOB NOT NULL)")
+    if folder.lab.exists():
+        copy.execute(f"INSERT INTO {TABLE} VALUES (?, ?)", (LAB, b""))
     large = []
     for name, path in _files(folder, config):
         if path.stat().st_size > FILE_BYTES_MAX:
@@ -63,12 +68,13 @@ def take_files(database: Path, target: Path) -> list[str] | None:
         make_folder(target)
         for name, content in connection.execute(f"SELECT name, content FROM {TABLE}"):
             parts = PurePosixPath(name).parts
-            if not parts or parts[0] not in NAMES or ".." in parts:
+            if not parts or parts[0] not in (*NAMES, LAB) or ".." in parts:
                 raise SetupError(f"The backup holds a file {name!r}, which is none of a data folder.")
             path = target.joinpath(*parts)
             make_folder(path.parent)
             write_whole(path, content, 0o600)
-            names.append(name)
+            if name != LAB:
+                names.append(name)
         connection.execute(f"DROP TABLE {TABLE}")
         connection.commit()
         return names
@@ -76,15 +82,15 @@ def take_files(database: Path, target: Path) -> list[str] | None:
         connection.close()
 
 
-def put_files(folder: DataFolder, fresh: Path, aside: Path) -> None:
-    """Move the files in `fresh` to their paths; existing files go into the new folder `aside`.
+def put_files(folder: DataFolder, fresh: Path, aside: Path, names: Sequence[str] = NAMES) -> None:
+    """Move the files of these names in `fresh` to their paths; existing ones go into the new folder `aside`.
 
     Files that the backup lacks go aside as well: afterwards the files are those of the backup. Without
     `fresh` all stay as they are. Raise OSError.
     """
     if not fresh.is_dir():
         return
-    for name in NAMES:
+    for name in names:
         present, restored = folder.path / name, fresh / name
         if present.exists():
             make_folder(aside)

@@ -19,7 +19,8 @@ from robot_runtime.errors import RefusedError
 from server.platform.database_copies import copy_database, new_copy_path, remove_abandoned
 from server.platform.disk_space import DIVE_BYTES
 from server.platform.errors import InsufficientStorageError
-from server.platform.settings import Settings
+from server.platform.settings import Settings, SetupError
+from server.platform.store import Store
 from server.platform.user_files import store_files
 
 PIECE_BYTES = 1 << 18
@@ -32,7 +33,8 @@ class DatabaseCopyError(InsufficientStorageError):
 class DatabaseDownloads:
     """Copies of a folder's database, made for download."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: Settings, store: Store) -> None:
+        self._store = store
         self._folder = settings.data
         self._config = settings.config
         self._path = settings.data.backups / "download.db"
@@ -45,7 +47,10 @@ class DatabaseDownloads:
             remove_abandoned(self._folder.backups)
 
     async def begin(self) -> Response:
-        """Return an answer that sends the database as it is now. Raise RefusedError, DatabaseCopyError."""
+        """Return an answer that sends the database as it is now.
+
+        Raise RefusedError, DatabaseCopyError, StoreError.
+        """
         if self._busy:
             raise RefusedError("A backup is being copied or downloaded already. Wait until it is done.")
         self._busy = True
@@ -60,21 +65,22 @@ class DatabaseDownloads:
         self._busy = False
 
     def _copy(self) -> BinaryIO:
-        database = self._folder.database
+        size = self._store.measure().size
         try:
             make_folder(self._path.parent)
-            free, size = shutil.disk_usage(self._path.parent).free, database.stat().st_size
+            free = shutil.disk_usage(self._path.parent).free
             if free < size + DIVE_BYTES:
                 raise DatabaseCopyError(
                     f"There is no room for a copy: {free / 1e6:.0f} MB are free, and the database has "
                     f"{size / 1e6:.0f} MB. Remove sessions or exports; or copy it to another disk, with "
-                    "`mucat backup FILE` on the robot's computer."
+                    "`mucat backup FILE` on the server's computer."
                 )
-            copy_database(
-                database, self._path, partial(store_files, folder=self._folder, config=self._config)
-            )
+            add = partial(store_files, folder=self._folder, config=self._config)
+            copy_database(self._store.location, self._path, add)
             file = self._path.open("rb")
             self._path.unlink()
+        except SetupError as problem:
+            raise DatabaseCopyError(str(problem)) from problem
         except (OSError, sqlite3.Error) as problem:
             raise DatabaseCopyError(f"The database cannot be copied: {problem}. Check the disk.") from problem
         return file
