@@ -14,3 +14,7 @@ class ArchiveIntake(ABC):
         Return the session's number. Raise InvalidError for a file that is no whole archive of a version that
         can be read, RefusedError where the session is here already, FileWriteError, StoreError.
         """
+
+    @abstractmethod
+    async def drop_unfinished(self) -> None:
+        """Have the rest of imports that broke off removed. Raise StoreError."""

@@ -3,6 +3,7 @@
 import asyncio
 import logging
 from functools import partial
+from time import monotonic
 
 from pydantic import TypeAdapter
 from sqlalchemy import Connection, delete, insert
@@ -18,6 +19,8 @@ log = logging.getLogger(__name__)
 
 PERIOD_SECONDS = 10.0
 """Between two looks for sessions without figures."""
+AGAIN_SECONDS = 600.0
+"""After which a session is tried again whose figures could not be computed, as while the archive is away."""
 
 
 class FigureWorker:
@@ -26,8 +29,8 @@ class FigureWorker:
     def __init__(self, comparison: ComparisonWorker, store: Store) -> None:
         self._comparison = comparison
         self._store = store
-        self._failed: set[int] = set()
-        """Not tried again before the next start."""
+        self._failed: dict[int, float] = {}
+        """Times of failures (s, steady clock), by the sessions' numbers."""
 
     async def run(self) -> None:
         """Compute what is missing, for ever."""
@@ -45,15 +48,17 @@ class FigureWorker:
                 answer = await self._comparison.ask("figures", str(session))
             except ComparisonError as problem:
                 log.warning("session %s gets no figures: %s", session, problem)
-                self._failed.add(session)
+                self._failed[session] = monotonic()
                 continue
             sets = TypeAdapter(list[FigureSet]).validate_json(answer)
             await self._store.write(partial(_store, session=session, sets=sets))
 
     def _find(self) -> int | None:
+        lately = monotonic() - AGAIN_SECONDS
+        self._failed = {session: failed for session, failed in self._failed.items() if failed > lately}
         made = select(SessionFiguresRow.session_id)
         query = select(SessionRow.id).where(col(SessionRow.state).in_(("complete", "interrupted")))
-        query = query.where(col(SessionRow.id).not_in(made), col(SessionRow.id).not_in(self._failed))
+        query = query.where(col(SessionRow.id).not_in(made), col(SessionRow.id).not_in([*self._failed]))
         with self._store.read() as database:
             return database.exec(query.order_by(col(SessionRow.id).desc()).limit(1)).first()
 

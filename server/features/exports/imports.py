@@ -92,6 +92,11 @@ class Imports(ArchiveIntake):
             finally:
                 await asyncio.to_thread(merged.unlink, missing_ok=True)
 
+    async def drop_unfinished(self) -> None:
+        """Have the rest of imports that broke off removed. Raise StoreError."""
+        async with self._busy:
+            await self._drop_unfinished()
+
     async def _take(self, path: Path, merged: Path | None = None) -> int:
         # The process that checks it gives way to all others: on a busy computer it needs a minute to begin.
         if not await asyncio.to_thread(zipfile.is_zipfile, path):

@@ -141,9 +141,15 @@ class SessionPull:
     async def _pull(self, client: RobotClient, robot: PairedRobot, progress: _Progress) -> None:
         sessions = await asyncio.to_thread(client.sessions)
         progress.seen = time()
-        stored, pulled = await asyncio.to_thread(
+        # Of one that the archive's own end has cut off, which is not here.
+        await self._intake.drop_unfinished()
+        stored, pulled, noted = await asyncio.to_thread(
             self._find_known, [session.identifier for session in sessions]
         )
+        for session in sessions:
+            # The lab may have been killed in between; and what was imported counts as pulled.
+            if session.identifier in stored - noted:
+                await self._store.write(partial(_note, session=session, robot=robot.name))
         lacking = [entry for entry in sessions if entry.identifier not in stored | pulled]
         for number, session in enumerate(lacking):
             if session.identifier in progress.problems:
@@ -172,10 +178,12 @@ class SessionPull:
         else:
             progress.phase, progress.text = "done", "All of its sessions are in the archive."
 
-    def _find_known(self, identifiers: Sequence[str]) -> tuple[set[str], set[str]]:
-        """Return those that are in the archive, and those that are there no longer, or in its bin."""
+    def _find_known(self, identifiers: Sequence[str]) -> tuple[set[str], set[str], set[str]]:
+        """Return those that are in the archive, those that are there no longer, or in its bin, and those that
+        are noted as pulled."""
         here: set[str] = set()
         gone: set[str] = set()
+        noted: set[str] = set()
         with self._store.read() as database:
             for some in _parts(identifiers, IDENTIFIERS_AT_ONCE):
                 columns = select(SessionRow.identifier, SessionRow.state, SessionRow.deleted)
@@ -186,8 +194,8 @@ class SessionPull:
                     if state != IMPORTING:
                         (here if state != REMOVING and deleted is None else gone).add(identifier)
                 those = col(PulledSessionRow.identifier).in_(some)
-                gone.update(database.exec(select(PulledSessionRow.identifier).where(those)))
-        return here, gone - here
+                noted.update(database.exec(select(PulledSessionRow.identifier).where(those)))
+        return here, (gone | noted) - here, noted
 
     async def _take(self, client: RobotClient, session: RobotsSession, progress: _Progress) -> bool:
         """Bring a session into the archive; return False where it cannot be read.

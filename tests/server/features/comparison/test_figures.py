@@ -5,9 +5,10 @@ from sqlalchemy import insert
 from sqlmodel import select
 
 from server.analysis.definitions import STORY_FIGURES
+from server.features.comparison import figure_worker
 from server.features.comparison.figure_query import FigureQuery, FigureStudy, quantile, study_figure
-from server.features.comparison.figure_worker import FigureWorker
-from server.features.comparison.worker import ComparisonWorker
+from server.features.comparison.figure_worker import AGAIN_SECONDS, FigureWorker
+from server.features.comparison.worker import ComparisonError, ComparisonWorker, Task
 from server.platform.models import SessionFiguresRow, SessionRow
 from server.platform.settings import Settings
 from server.platform.store import Store
@@ -101,6 +102,34 @@ async def test_the_comparing_process_computes_each_session_once(store: Store, se
         rows = database.exec(select(SessionFiguresRow)).all()
     assert [(row.session_id, row.segment, row.controller) for row in rows] == [(session, 0, "")]
     assert isinstance(study_figure(store, FigureQuery(figure="frames_lost")), FigureStudy)
+
+
+async def test_a_session_whose_figures_failed_is_tried_again_after_a_while(
+    store: Store, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session = await record_batches(store, settings, [depth_block(0, 500)])
+    comparison, now, asked = ComparisonWorker(settings.data), [1e6], list[str]()
+    ask = comparison.ask
+
+    async def fail_at_first(task: Task, query: str) -> bytes:
+        asked.append(query)
+        if len(asked) == 1:
+            raise ComparisonError("The database does not work: PostgreSQL does not answer.")
+        return await ask(task, query)
+
+    monkeypatch.setattr(comparison, "ask", fail_at_first)
+    monkeypatch.setattr(figure_worker, "monotonic", lambda: now[0])
+    try:
+        worker = FigureWorker(comparison, store)
+        await worker.compute_missing()
+        await worker.compute_missing()
+        assert asked == [str(session)]
+        now[0] += AGAIN_SECONDS
+        await worker.compute_missing()
+    finally:
+        await comparison.close()
+    with store.read() as database:
+        assert [row.session_id for row in database.exec(select(SessionFiguresRow))] == [session]
 
 
 def test_every_kept_figure_has_a_column_and_can_be_asked_for() -> None:

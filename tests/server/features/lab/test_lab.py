@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from server.feature import list_features
+from server.health.monitor import HealthMonitor
 from server.platform.last_configuration import read_usable_settings
 from server.platform.settings import Settings, SetupError
 from server.processes.supervisor import plan
@@ -13,6 +14,7 @@ from server.startup import _become_lab
 from server.stream.bridge import Bridge
 from tests.server.features.lab.labs import serve_lab
 from tests.server.new_database import place_empty
+from tests.server.waiting import until
 
 ROBOTS_OWN = {"operate", "lease", "tuning", "vision", "recording", "snapshots", "board", "bring_up", "doors"}
 
@@ -23,9 +25,11 @@ async def test_it_has_sessions_and_no_robot(settings: Settings) -> None:
         me = (await api.get("/access/me")).json()
         assert me["lab"] is True
         assert (await api.get("/sessions")).json() == []
+        monitor = lab.get(HealthMonitor)
+        await until(lambda: monitor.health().status == "ok", "the router")
         health = (await api.get("/health")).json()
         parts = [part["name"] for part in health["parts"]]
-        assert (health["status"], parts) == ("ok", ["server", "database"])
+        assert (health["status"], parts) == ("ok", ["server", "database", "router", "robots"])
         assert (await api.get("/alive")).status_code == 204
         for gone in ("/robot", "/control", "/vision", "/link/frames", "/parameters"):
             assert (await api.get(gone)).status_code == 404, gone

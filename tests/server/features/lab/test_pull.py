@@ -32,7 +32,7 @@ from server.platform.disk_space import FileWriteError
 from server.platform.models import Chunk
 from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder, Settings, make_folders
-from server.platform.store import Store, StoreError
+from server.platform.store import Reader, Store, StoreError
 from tests.server.blocks import depth_block, film_block
 from tests.server.features.exports.recordings import record_batches
 from tests.server.features.lab.labs import ServedLab, serve_lab
@@ -76,9 +76,14 @@ def url_of(robot: PulledRobot) -> str:
 
 async def introduce(lab: ServedLab, robot: PulledRobot, **values: str) -> None:
     """Have a robot join the lab, as by a code."""
+    await asyncio.to_thread(lab.get(PairedRobots).add, await pair(robot, **values))
+
+
+async def pair(robot: PulledRobot, **values: str) -> PairedRobot:
+    """Return the lab's entry of a robot that has joined."""
     _, token = await robot.get(Access).make_lab(f"Lab {token_hex(4)}", SHELL)
     joined = {"name": "tested", "address": url_of(robot), "fingerprint": "", "token": token} | values
-    await asyncio.to_thread(lab.get(PairedRobots).add, PairedRobot(**joined, joined=0.0))
+    return PairedRobot(**joined, joined=0.0)
 
 
 async def see(lab: ServedLab, phase: str) -> dict[str, Any]:
@@ -90,7 +95,7 @@ async def see(lab: ServedLab, phase: str) -> dict[str, Any]:
     return robot
 
 
-def rows_of(store: Store, session: int) -> bytes:
+def rows_of(store: Reader, session: int) -> bytes:
     return b"".join(Recording.open(store, session).rows("depth"))
 
 
