@@ -33,7 +33,19 @@ GRACE_SECONDS = 10.0
 NO_PICTURE = "no picture"
 """The beginning of the runtime's words for a camera that fails."""
 
-PartName = Literal["server", "database", "runtime", "link", "board", "simulator", "scene", "camera", "events"]
+PartName = Literal[
+    "server",
+    "database",
+    "runtime",
+    "link",
+    "board",
+    "simulator",
+    "scene",
+    "camera",
+    "events",
+    "router",
+    "robots",
+]
 PartState = Literal["ok", "starting", "failed", "absent", "unknown"]
 Condition = tuple[PartState, str]
 """The state of a part, and a sentence about it."""
@@ -58,7 +70,7 @@ class Health(Schema):
     robot: str
     parts: list[PartHealth] = Field(
         description="server and database; of a robot also runtime, link, board, simulator, scene, camera, "
-        "and events where `[events]` in robot.toml names a broker"
+        "and events where `[events]` in robot.toml names a broker; of a lab also router and robots"
     )
 
 
@@ -72,8 +84,8 @@ class HealthMonitor:
         store: Store,
         processes: ProcessSupervisor,
     ) -> None:
-        self.events: Callable[[], Condition | None] = lambda: None
-        """The state of the way to the broker of events; None without one."""
+        self.more: dict[PartName, Callable[[], Condition | None]] = {}
+        """Parts of features: a function for each, which returns None where there is nothing to say."""
         self._settings = settings
         self._clock = clock
         self._store = store
@@ -169,8 +181,9 @@ class HealthMonitor:
                 "scene": self._scene(),
                 "camera": self._camera(),
             }
-        if (events := self.events()) is not None:
-            conditions["events"] = events
+        for name, ask in self.more.items():
+            if (condition := ask()) is not None:
+                conditions[name] = condition
         parts = [PartHealth(name=name, state=state, text=text) for name, (state, text) in conditions.items()]
         simulator = self._processes.get("simulator")
         if self._settings.in_the_loop and simulator is not None:

@@ -3,6 +3,8 @@
 The functions of SQLite that queries use are there by the same names.
 """
 
+from collections.abc import Sequence
+
 from sqlalchemy import Connection, create_engine, inspect, pool
 from sqlalchemy.exc import DBAPIError
 from sqlmodel import SQLModel
@@ -45,6 +47,21 @@ def prepare_archive(url: str) -> None:
         ) from problem
 
 
+def measure_archive(url: str) -> int:
+    """Return the bytes of an archive, which this version can use or upgrade; nothing is changed.
+
+    Raise SetupError where it cannot be reached or used.
+    """
+    engine = create_engine(url, poolclass=pool.NullPool, connect_args={"connect_timeout": CONNECT_SECONDS})
+    try:
+        with engine.connect() as connection:
+            if tables := inspect(connection).get_table_names():
+                _read_revision(connection, tables, url)
+            return PostgreSQL(url).measure(connection).size
+    except DBAPIError as problem:
+        raise SetupError(f"{PostgreSQL(url).explain(problem)}.") from problem
+
+
 def _prepare(connection: Connection, url: str) -> None:
     encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
     if encoding != "UTF8":
@@ -59,23 +76,31 @@ def _prepare(connection: Connection, url: str) -> None:
         connection.exec_driver_sql("CREATE TABLE alembic_version (version_num varchar(32) PRIMARY KEY)")
         connection.exec_driver_sql(f"INSERT INTO alembic_version VALUES ('{HEAD}')")
         return
+    if _read_revision(connection, tables, url) != HEAD:
+        from alembic import command
+
+        from server.platform.schema import make_config
+
+        config = make_config()
+        config.attributes["connection"] = connection
+        command.upgrade(config, "head")
+
+
+def _read_revision(connection: Connection, tables: Sequence[str], url: str) -> str:
+    """Return the revision of an archive. Raise SetupError where this version cannot use it."""
     if "alembic_version" not in tables:
         raise SetupError(f"The archive {url} holds tables of another program. Name another database.")
     revision = str(connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalar_one())
     if revision != HEAD:
-        _upgrade(connection, revision, url)
+        _refuse_unknown(revision, url)
+    return revision
 
 
-def _upgrade(connection: Connection, revision: str, url: str) -> None:
-    from alembic import command
-
-    from server.platform.schema import known_revisions, make_config
+def _refuse_unknown(revision: str, url: str) -> None:
+    from server.platform.schema import known_revisions
 
     if not revision >= FIRST or revision not in known_revisions():
         raise SetupError(
             f"The archive {url} was written by a newer version (its revision is {revision}, this "
             f"version's is {HEAD}). Install that version, or name another database."
         )
-    config = make_config()
-    config.attributes["connection"] = connection
-    command.upgrade(config, "head")

@@ -1516,7 +1516,7 @@ export interface components {
         };
         /** @description The health of all parts: "failed" if one has failed, else "starting" if one starts, else "ok". */
         Health: {
-            /** @description server and database; of a robot also runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker */
+            /** @description server and database; of a robot also runtime, link, board, simulator, scene, camera, and events where `[events]` in robot.toml names a broker; of a lab also router and robots */
             parts: components["schemas"]["PartHealth"][];
             robot: string;
             /** @enum {string} */
@@ -2171,7 +2171,7 @@ export interface components {
             /** @description true if a simulator that can be started and ended runs on this computer */
             here: boolean | null;
             /** @enum {string} */
-            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene" | "camera" | "events";
+            name: "server" | "database" | "runtime" | "link" | "board" | "simulator" | "scene" | "camera" | "events" | "router" | "robots";
             /** @enum {string} */
             state: "ok" | "starting" | "failed" | "absent" | "unknown";
             text: string;

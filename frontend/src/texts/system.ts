@@ -83,7 +83,7 @@ export const system = {
   },
   doctor: {
     title: 'This computer',
-    about: 'Checks of the computer that the robot runs on. In a shell: mucat doctor',
+    about: 'Checks of the computer that the server runs on. In a shell: mucat doctor',
     good: (count: number) => `All ${count} checks are good.`,
     passed: (count: number) => (count === 1 ? '1 good check' : `${count} good checks`),
     verdicts: { ok: 'ok', look: 'look', wrong: 'wrong' },
@@ -256,6 +256,8 @@ export const system = {
       scene: 'Scene',
       camera: 'Camera',
       events: 'Events to other programs',
+      router: 'Router of the robots',
+      robots: 'Robots',
     },
   },
   doors: {

@@ -4,6 +4,15 @@ from collections.abc import Callable
 
 from robot_runtime.contract.buoyancy import RESERVE
 from server.features.doctor.findings import Finding, Reporter
+from server.features.doctor.lab_checks import (
+    check_archive,
+    check_certificates,
+    check_lab_service,
+    check_robots,
+    check_router,
+    check_scheduler,
+)
+from server.features.doctor.lab_facts import UNIT
 from server.features.doctor.machine import BRLTTY, MODEM_MANAGER, SERVICE, WARM, Machine
 from server.platform.disk_space import DIVE_BYTES
 from server.platform.supply_voltage import UNDERVOLTAGE_NOW, UNDERVOLTAGE_SINCE
@@ -29,9 +38,16 @@ def check_configuration(machine: Machine) -> Finding | None:
     """Check that the configuration can be used."""
     report = Reporter("configuration", "Configuration")
     if machine.configuration_problem:
-        then = ", then: sudo systemctl restart mucat-runtime mucat" if SERVICE in machine.units else ""
-        return report.wrong(machine.configuration_problem, f"Correct it (docs/run/configure.md){then}")
-    return report.ok(f"Mode “{machine.mode}”.")
+        services = {SERVICE: "mucat-runtime mucat", UNIT: "mucat-lab"}
+        then = [
+            f", then: sudo systemctl restart {names}"
+            for unit, names in services.items()
+            if unit in machine.units
+        ]
+        return report.wrong(
+            machine.configuration_problem, f"Correct it (docs/run/configure.md){''.join(then)}"
+        )
+    return report.ok(f"Mode “{machine.mode}”." if machine.lab is None else "A lab.")
 
 
 def check_versions(machine: Machine) -> Finding | None:
@@ -69,9 +85,8 @@ def check_data(machine: Machine) -> Finding | None:
         )
     free = f"{machine.disk_free / 1e6:.0f} MB are free for {machine.data}"
     if machine.disk_free < DIVE_BYTES:
-        return report.wrong(
-            f"{free}: an hour cannot be recorded.", "Delete sessions on the page, or: mucat sessions"
-        )
+        lacks = "an hour cannot be recorded" if machine.lab is None else "no session can be fetched"
+        return report.wrong(f"{free}: {lacks}.", "Delete sessions on the page, or: mucat sessions")
     if machine.disk_free < DISK_LOW:
         return report.look(f"{free}.", "Delete sessions on the page, or: mucat sessions")
     return report.ok(f"{free}.")
@@ -80,6 +95,8 @@ def check_data(machine: Machine) -> Finding | None:
 def check_database(machine: Machine) -> Finding | None:
     """Check that the database can be read, and that this version knows it."""
     report = Reporter("database", "Database")
+    if machine.lab is not None and machine.lab.archive:
+        return None
     if machine.database_problem:
         return report.wrong(machine.database_problem, "mucat restore FILE; docs/run/backup.md")
     return report.ok("Can be read.")
@@ -409,6 +426,25 @@ CHECKS: tuple[Check, ...] = (
 """In the order of the report: what everything else needs comes first."""
 
 
+LAB_CHECKS: tuple[Check, ...] = (
+    check_configuration,
+    check_versions,
+    check_libraries,
+    check_data,
+    check_database,
+    check_archive,
+    check_clock,
+    check_swap,
+    check_address,
+    check_lab_service,
+    check_certificates,
+    check_router,
+    check_robots,
+    check_scheduler,
+)
+
+
 def examine(machine: Machine) -> list[Finding]:
     """Return the findings of all checks that apply."""
-    return [finding for check in CHECKS if (finding := check(machine)) is not None]
+    checks = CHECKS if machine.lab is None else LAB_CHECKS
+    return [finding for check in checks if (finding := check(machine)) is not None]

@@ -12,10 +12,11 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from server.feature import list_features
+from server.features.doctor.lab_facts import UNIT, LabFacts, read_lab
 from server.platform.disk_space import free_bytes
 from server.platform.settings import Settings
 from server.platform.supply_voltage import read_throttled
@@ -111,6 +112,8 @@ class Machine:
     """The running runtime was started by another version, or with another configuration."""
     units: dict[str, str] = field(default_factory=dict)
     """Texts of the installed units, by name."""
+    lab: LabFacts | None = None
+    """Facts of a lab, which has no robot; None for a robot."""
 
 
 def read_machine(
@@ -125,24 +128,19 @@ def read_machine(
 
     Only a thorough examination imports the libraries, in another process, and opens an unused serial port.
     """
-    from robot_runtime.link.port import list_ports
-    from server.platform.folder_lock import runner_of
-    from server.platform.pidfile import running_parts
+    computer = _read_computer(settings, now, root, thorough=thorough)
+    if settings.lab:
+        return replace(computer, lab=read_lab(settings, heard, thorough=thorough))
+    return _add_robot(computer, settings, heard, root, thorough=thorough)
 
-    link, events = heard.get("link", ("", "")), heard.get("events", ("", ""))
-    boot = next(
-        (folder for folder in ("boot/firmware", "boot") if (root / folder / "config.txt").exists()), ""
-    )
+
+def _read_computer(settings: Settings, now: float, root: Path, *, thorough: bool) -> Machine:
+    """Read the facts that a robot and a lab have."""
+    from server.platform.folder_lock import runner_of
+
     units = {file.name: _read(file) for file in (root / "etc/systemd/system").glob("mucat*.*")}
-    user = _service_user(units.get(SERVICE, ""))
-    port, serial0 = Path(settings.link.port), root / "dev/serial0"
-    runtime = running_parts(settings.data.run).get("runtime")
     serves = runner_of(settings.data) is not None
-    reset_label, reset_problem = _read_reset(settings.link.reset)
-    firmware = _firmware(settings)
-    mass, reserve, warm_reserve = _read_weighing(settings)
     return Machine(
-        mode=settings.robot.mode if not settings.emulated_board else "emulated",
         python=sys.version_info[:2],
         system=_pretty_name(_read(root / "etc/os-release")),
         architecture=platform.machine(),
@@ -155,6 +153,42 @@ def read_machine(
         disk_free=free_bytes(_existing(settings.data.path)),
         disk_read_only=_is_read_only(_existing(settings.data.path), _read(root / "proc/mounts")),
         database_problem=_try_database(settings),
+        user=_service_user(units.get(UNIT if settings.lab else SERVICE, "")),
+        now=now,
+        clock_synchronised=is_synchronised(),
+        memory=os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"),
+        swaps=tuple(line.split()[0] for line in _read(root / "proc/swaps").splitlines()[1:] if line),
+        address=(_announced(settings) if serves else "") or f"{settings.server.host}:{settings.server.port}",
+        address_problem="" if serves else _try_address(settings.server.host, settings.server.port),
+        server_runs=serves,
+        units=units,
+    )
+
+
+def _add_robot(
+    computer: Machine,
+    settings: Settings,
+    heard: Mapping[str, tuple[str, str]],
+    root: Path,
+    *,
+    thorough: bool,
+) -> Machine:
+    """Read the facts that only a robot has."""
+    from robot_runtime.link.port import list_ports
+    from server.platform.pidfile import running_parts
+
+    link, events = heard.get("link", ("", "")), heard.get("events", ("", ""))
+    boot = next(
+        (folder for folder in ("boot/firmware", "boot") if (root / folder / "config.txt").exists()), ""
+    )
+    port, serial0 = Path(settings.link.port), root / "dev/serial0"
+    runtime = running_parts(settings.data.run).get("runtime")
+    reset_label, reset_problem = _read_reset(settings.link.reset)
+    firmware = _firmware(settings)
+    mass, reserve, warm_reserve = _read_weighing(settings)
+    return replace(
+        computer,
+        mode=settings.robot.mode if not settings.emulated_board else "emulated",
         firmware=str(firmware),
         firmware_there=firmware.exists(),
         port=str(port),
@@ -173,8 +207,7 @@ def read_machine(
         kernel_line=_read(root / boot / "cmdline.txt") if boot else "",
         login_on_port=_has_login(root, port),
         boot_folder=f"/{boot}",
-        user=user,
-        groups=_groups_of(user),
+        groups=_groups_of(computer.user),
         reset=settings.link.reset,
         reset_label=reset_label,
         reset_problem=reset_problem,
@@ -184,17 +217,9 @@ def read_machine(
         camera=_camera(settings),
         camera_library=_has_picamera(),
         cameras=_list_cameras(root),
-        now=now,
-        clock_synchronised=is_synchronised(),
         throttled=read_throttled(root),
         memory_cgroup=_has_memory_cgroup(root),
-        memory=os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"),
-        swaps=tuple(line.split()[0] for line in _read(root / "proc/swaps").splitlines()[1:] if line),
-        address=(_announced(settings) if serves else "") or f"{settings.server.host}:{settings.server.port}",
-        address_problem="" if serves else _try_address(settings.server.host, settings.server.port),
-        server_runs=serves,
         runtime_outdated=runtime is not None and runtime.fingerprint != _fingerprint(settings),
-        units=units,
     )
 
 

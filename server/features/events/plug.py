@@ -45,7 +45,7 @@ class EventsPlug(Plug):
         feed.listen(announcer.see, STATE, MISSION)
         hub.listeners.append(announcer.see_message)
         ends.listeners.append(announcer.see_comm_test)
-        monitor.events = outlet.condition
+        monitor.more["events"] = outlet.condition
 
     async def open(self) -> None:
         """Connect."""

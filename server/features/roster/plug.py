@@ -7,6 +7,7 @@ from typing import Any
 from server.feature import Plug
 from server.features.roster.roster import Roster
 from server.features.roster.router_process import RouterProcess
+from server.health.monitor import HealthMonitor
 from server.platform.authority import Authority
 from server.platform.lab_network import ROBOTS
 from server.platform.settings import Settings
@@ -15,10 +16,14 @@ from server.platform.settings import Settings
 class RosterPlug(Plug):
     """The plug that keeps the router running as long as the lab's server."""
 
-    def __init__(self, settings: Settings, router: RouterProcess, roster: Roster) -> None:
+    def __init__(
+        self, settings: Settings, router: RouterProcess, roster: Roster, monitor: HealthMonitor
+    ) -> None:
         self._settings = settings
         self._router = router
         self._roster = roster
+        if settings.lab:
+            monitor.more |= {"router": router.condition, "robots": roster.condition}
 
     async def open(self) -> None:
         """Make the lab's certificates at its first start."""

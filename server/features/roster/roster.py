@@ -21,6 +21,7 @@ from robot_runtime.transport.network import AUTHORITY, CERTIFICATE, KEY
 from server.features.roster.fleet_session import FleetSession
 from server.features.roster.router_process import AGAIN_SECONDS, RouterProcess
 from server.features.roster.schemas import RosterDetails, RosterRobot, StoppedRobot
+from server.health.monitor import Condition
 from server.http.pinned_requests import OtherServerRefusedError, UnreachableError, known_by, send
 from server.interchange.presence import Presence
 from server.platform.authority import Authority
@@ -46,6 +47,8 @@ SIGN_OUT_SECONDS = 5.0
 CLOCK_SECONDS = 60.0
 """Interval of the clocks' measurement."""
 LOOK_SECONDS = 1.0
+SILENT_DAYS = 7
+"""After which a robot that is not heard is named."""
 
 
 class CertificateNotMadeError(UnavailableError):
@@ -80,6 +83,7 @@ class Roster:
         self._robots = robots
         self._router = router
         self._notices = notices
+        self._began = clock.now()
         self._seen: dict[str, _Seen] = {}
         self._session: FleetSession | None = None
         self._stops = ThreadPoolExecutor(STOPS_AT_ONCE, "stop")
@@ -142,6 +146,23 @@ class Roster:
         return RosterDetails(
             robots=[self._describe(robot) for robot in self._robots.all()], problem=self._router.problem
         )
+
+    def condition(self) -> Condition:
+        """Return which robots are heard, for the health of the lab."""
+        robots, now = self._robots.all(), self._clock.now()
+        seen = [self._seen.get(robot.name, _Seen()) for robot in robots]
+        if not robots:
+            return "ok", "No robot has joined yet: mucat lab pair."
+        text = f"{sum(map(self._is_present, seen))} of {len(robots)} are heard now."
+        long_ago = now - SILENT_DAYS * 86_400
+        silent = [
+            robot.name
+            for robot, last in zip(robots, seen, strict=True)
+            if max(last.heard, self._began) < long_ago
+        ]
+        if silent:
+            return "absent", f"{text} Not heard for {SILENT_DAYS} days: {', '.join(silent)}."
+        return "ok", text
 
     async def join(self, name: str, address: str, fingerprint: str, token: str) -> dict[str, str]:
         """Add a robot; return the files of its certificate, by their names.

@@ -5,6 +5,7 @@ import logging
 import re
 from signal import SIGTERM
 
+from server.health.monitor import Condition
 from server.platform.settings import Settings
 from server.processes.side_process import SideProcess
 
@@ -13,13 +14,14 @@ log = logging.getLogger(__name__)
 PORT = 7447
 """The port of Zenoh."""
 AGAIN_SECONDS = 1.0
+STARTING = "The router is starting."
 
 
 class RouterProcess:
     """The router. It reads at its start who is let in: a change starts it anew, and the robots come back."""
 
     def __init__(self, settings: Settings) -> None:
-        self.problem = "The router is starting."
+        self.problem = STARTING
         """Reason why no robot can be heard; empty while the router runs."""
         host = settings.server.host
         self._network = settings.zenoh.listen or [f"tls/{f'[{host}]' if ':' in host else host}:{PORT}"]
@@ -53,6 +55,12 @@ class RouterProcess:
                 continue
             log.warning("%s It is started again.", self.problem)
             await asyncio.sleep(AGAIN_SECONDS)
+
+    def condition(self) -> Condition:
+        """Return its condition, for the health of the lab."""
+        if not self.problem:
+            return "ok", f"Robots reach it at port {self.port}."
+        return "starting" if self.problem == STARTING else "failed", self.problem
 
     async def wait(self) -> None:
         """Wait until it runs."""
