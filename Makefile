@@ -248,15 +248,15 @@ wheels: setup ## build the wheels into dist/, with the emulated board for this c
 all-wheels: build/.packages-packages setup ## the same with the emulated board for every architecture
 	@$(PYTHON) -m packages.wheels x86_64 aarch64 i686
 
-release: setup ## build a signed release for robots into dist/: make release KEY=~/release-key.pem (MACHINE=aarch64 PYTHON_OF=3.13)
+release: setup ## build a signed release for robots into dist/: make release KEY=~/release-key.pem (MACHINE=aarch64 PYTHON_OF=3.13, LAB=1 for a lab)
 	@test -n "$(KEY)" || { echo "Name the secret key, which is made where there is none: make release KEY=FILE"; exit 1; }
-	@$(PYTHON) -m packages.release $(KEY) $(addprefix --machine ,$(MACHINE)) $(addprefix --python ,$(PYTHON_OF))
+	@$(PYTHON) -m packages.release $(KEY) $(addprefix --machine ,$(MACHINE)) $(addprefix --python ,$(PYTHON_OF)) $(if $(LAB),--lab)
 
 image: setup build/.packages-packages ## build the container image of the emulated robot and the lab into dist/ (needs root): make image KEY=FILE
 	@test -n "$(KEY)" || { echo "Name the secret key, which is made where there is none: make image KEY=FILE"; exit 1; }
 	@$(PYTHON) -m packages.image $(KEY)
 
-image-swims: setup build/.packages-packages ## build the image, start it, arm its robot and fetch the page (needs root)
+image-swims: setup build/.packages-packages ## build the image, arm its robot, and serve a lab with PostgreSQL (needs root)
 	@nice $(PYTHON) -m tests.proofs.image
 
 clean: ## remove everything that was built

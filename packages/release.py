@@ -10,6 +10,7 @@ import platform
 import shutil
 import sys
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from packages.architectures import ARCHITECTURES, PackagingError
@@ -26,6 +27,8 @@ SMALL_MACHINES = ("armv6l", "armv7l", "i686")
 """With 32 bits."""
 EXTRAS = ("pi", "film", "mqtt", "parquet", "identify", "ros2")
 """What an installed robot has besides, with 64 bits; with 32 only `mqtt` has wheels."""
+LAB_EXTRAS = ("film", "parquet", "identify", "lab")
+"""What a lab has besides, on a computer with 64 bits."""
 PURE: tuple[str, ...] = ("cobs",)
 """Packages without wheels for every computer, which are plain Python where there is no C compiler."""
 SMALL_PURE = (*PURE, "markupsafe")
@@ -38,34 +41,37 @@ def main() -> int:
     parser.add_argument("key", type=Path, help="the secret key; made where there is none")
     parser.add_argument("--machine", default=platform.machine(), choices=(*MACHINES, *SMALL_MACHINES))
     parser.add_argument("--python", help="3.11, ...; without it this computer's, for 32 bits Debian 13's")
+    parser.add_argument("--lab", action="store_true", help="with what a lab needs, and no robot does")
     options = parser.parse_args()
     own = ".".join(platform.python_version_tuple()[:2])
     python = options.python or (SMALL["python_version"] if options.machine in SMALL_MACHINES else own)
     try:
-        print(build_release(options.key, options.machine, python, DIST))
+        print(build_release(options.key, options.machine, python, DIST, lab=options.lab))
     except PackagingError as problem:
         print(problem, file=sys.stderr)
         return 1
     return 0
 
 
-def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
-    """Build the folder of a release; an older one of this name is replaced. Return its path.
+def build_release(secret: Path, machine: str, python: str, dist: Path, *, lab: bool = False) -> Path:
+    """Build the folder of a release for robots or a lab; an older one of this name is replaced.
 
-    Raise PackagingError.
+    Return its path. Raise PackagingError.
     """
+    if lab and machine not in MACHINES:
+        raise PackagingError(f"A lab needs a computer with 64 bits: {', '.join(MACHINES)}.")
     if machine in SMALL_MACHINES and python != SMALL["python_version"]:
         raise PackagingError(
             f"Computers with 32 bits need Debian 13, whose Python is {SMALL['python_version']}."
         )
-    folder = dist / f"mucat-{VERSION}-{machine}-python{python}"
+    folder = dist / f"mucat-{'lab-' if lab else ''}{VERSION}-{machine}-python{python}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     wheel = build_mucat(dist)
     shutil.copy(wheel, folder)
     if machine in ARCHITECTURES:
         shutil.copy(build_emulator(ARCHITECTURES[machine], dist), folder)
-    _gather(folder, wheel, machine, python)
+    _gather(folder, wheel, machine, python, LAB_EXTRAS if lab else EXTRAS)
     shutil.copy(PACKAGES / "packages/install.sh", folder)
     if not secret.exists():
         make_key(secret)
@@ -78,7 +84,7 @@ def build_release(secret: Path, machine: str, python: str, dist: Path) -> Path:
     return folder
 
 
-def _gather(folder: Path, wheel: Path, machine: str, python: str) -> None:
+def _gather(folder: Path, wheel: Path, machine: str, python: str, extras: Sequence[str]) -> None:
     """Put the wheels of mucat's dependencies into the folder, in the pinned versions."""
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
     pins = ["--constraint", str(PACKAGES / "constraints.txt")]
@@ -86,7 +92,7 @@ def _gather(folder: Path, wheel: Path, machine: str, python: str) -> None:
         # pip would take what mucat needs on this computer.
         pure, requirements = SMALL_PURE, ["--no-deps", *small_requirements()]
     else:
-        pure, requirements = PURE, [*pins, f"{wheel}[{','.join(EXTRAS)}]"]
+        pure, requirements = PURE, [*pins, f"{wheel}[{','.join(extras)}]"]
     for package in pure:
         command = [*pip, "wheel", "--no-deps", "--no-cache-dir", "--no-binary", package, *pins]
         command += ["--wheel-dir", str(folder), package]

@@ -27,13 +27,14 @@ OPEN_UMASK = 0o022
 @click.argument("release", type=FILE, required=False)
 @click.option("--yes", is_flag=True, help="Change the boot settings without asking.")
 @click.option("--dry-run", is_flag=True, help="Say what would be done, and do nothing.")
-def install(release: Path | None, *, yes: bool, dry_run: bool) -> None:
+@click.option("--lab", is_flag=True, help="Install a lab: a server without a robot, for several robots.")
+def install(release: Path | None, *, yes: bool, dry_run: bool, lab: bool) -> None:
     """Install µ-CAT as services on this computer.
 
     RELEASE is a folder of wheels; the default is that of the installed version. Existing files stay; a
     repeated installation adds missing ones.
     """
-    places = InstallPlaces()
+    places = InstallPlaces(lab=lab)
     _require_root("install", dry=dry_run)
     os.umask(OPEN_UMASK)
     effects = Effects(echo, dry=dry_run)

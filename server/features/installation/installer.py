@@ -8,7 +8,7 @@ from pathlib import Path
 from server.features.installation.boot_settings import describe_change, edit_config, edit_kernel_line
 from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.environments import build_environment
-from server.features.installation.places import SERVICES, USER, InstallPlaces
+from server.features.installation.places import USER, InstallPlaces
 from server.features.installation.release import Release
 from server.features.installation.units import JOURNAL, write_command, write_units
 from server.features.installation.versions import look_at, refuse_in_use
@@ -36,6 +36,7 @@ class Installer:
     def install(self, release: Release) -> None:
         """Install the release, or mend an installation of its version. Raise SetupError."""
         self._refuse_other(release)
+        self._refuse_robot()
         if self._must_restart():
             refuse_in_use(self._effects, self._places)
         self._check_room(release)
@@ -53,6 +54,16 @@ class Installer:
         if version not in ("", release.version):
             raise SetupError(
                 f"µ-CAT {version} is installed here: sudo mucat update {release.folder}. Nothing was changed."
+            )
+
+    def _refuse_robot(self) -> None:
+        """Raise SetupError where a lab would take the place of a robot."""
+        places = self._places
+        robot = (places.data / "mucat.db").exists() or (places.units / "mucat.service").exists()
+        if places.lab and robot and not places.lab_mark.exists():
+            raise SetupError(
+                f"A robot is installed here, with its data in {places.data}. Install the lab on another "
+                "computer; nothing was changed."
             )
 
     def _must_restart(self) -> bool:
@@ -87,11 +98,14 @@ class Installer:
                 places.data,
             ]
             effects.run(*command, "--shell", "/usr/sbin/nologin", USER)
-        missing = [group for group in GROUPS if self._has_line("etc/group", group, without=USER)]
+        needed = () if places.lab else GROUPS
+        missing = [group for group in needed if self._has_line("etc/group", group, without=USER)]
         if missing:
             effects.run("usermod", "--append", "--groups", ",".join(missing), USER)
         if not places.data.is_dir():
             effects.run("install", "-d", "-m", "700", "-o", USER, "-g", USER, places.data)
+        if places.lab and not places.lab_mark.exists():
+            effects.run("install", "-m", "600", "-o", USER, "-g", USER, "/dev/null", places.lab_mark)
 
     def _has_line(self, file: str, name: str, without: str = "") -> bool:
         """Return True where the file has an entry of this name, whose members lack `without`."""
@@ -159,7 +173,9 @@ class Installer:
 
     def start(self, changed: bool) -> None:
         """Start the services, or restart changed ones, and wait until the page answers."""
-        self._effects.run("systemctl", "restart" if changed else "start", "mucat-update.path", *SERVICES)
+        places = self._places
+        path = () if places.lab else ("mucat-update.path",)
+        self._effects.run("systemctl", "restart" if changed else "start", *path, *places.services)
         wait_until_healthy(self._effects, self._places, FIRST_START_SECONDS)
 
     def uninstall(self) -> None:

@@ -3,15 +3,14 @@
 from pathlib import Path
 
 USER = "mucat"
-SERVICES = ("mucat-runtime.service", "mucat.service")
 COMPLETE = "mucat-complete"
 """File of an environment that was built to its end."""
 
 
 class InstallPlaces:
-    """The paths; `root` is / except in tests."""
+    """The paths; `root` is / except in tests. `lab` is true where the services are, or will be, a lab's."""
 
-    def __init__(self, root: Path = Path("/")) -> None:
+    def __init__(self, root: Path = Path("/"), *, lab: bool = False) -> None:
         self.root = root
         self.software = root / "opt/mucat"
         """Everything that an update replaces; it belongs to root."""
@@ -32,6 +31,9 @@ class InstallPlaces:
         self.key = self.settings / "release.pem"
         """The public key (Ed25519) by which releases are signed."""
         self.data = root / "var/lib/mucat"
+        self.lab_mark = self.data / "lab"
+        """Exists where this is the installation of a lab."""
+        self.lab = lab or self.lab_mark.exists()
         self.request = self.data / "update/request.json"
         """Exists from the page's request for an update until it is taken."""
         self.requested = self.data / "update/release.zip"
@@ -58,7 +60,14 @@ class InstallPlaces:
         return link.resolve().name if link.is_symlink() and link.exists() else ""
 
     @property
+    def services(self) -> tuple[str, ...]:
+        """The services that run all the time, in the order of their start."""
+        return ("mucat-lab.service",) if self.lab else ("mucat-runtime.service", "mucat.service")
+
+    @property
     def boot(self) -> Path | None:
-        """The folder of config.txt; None where this is no Raspberry Pi."""
+        """The folder of config.txt; None where this is no Raspberry Pi, or none of a robot."""
+        if self.lab:
+            return None
         folders = (self.root / "boot/firmware", self.root / "boot")
         return next((folder for folder in folders if (folder / "config.txt").exists()), None)

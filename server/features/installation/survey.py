@@ -45,8 +45,10 @@ def survey(settings: Settings) -> Survey:
     reads, copy = _look_at_database(settings.data)
     running, problem, armed, recording = "", "", None, False
     try:
-        # Alone: a damaged database does not hide an armed robot.
-        armed = ask(settings.data, "GET", "/robot", seconds=ROBOT_SECONDS)["armed"] is True
+        # Alone: a damaged database does not hide an armed robot. A lab has none.
+        armed = (
+            not settings.lab and ask(settings.data, "GET", "/robot", seconds=ROBOT_SECONDS)["armed"] is True
+        )
     except SetupError as failure:
         problem = str(failure)
     try:
@@ -76,6 +78,8 @@ def _look_at_database(folder: DataFolder) -> tuple[bool, str]:
     """Return True where this version can read the database; else its newest readable copy."""
     from server.platform.schema import find_copy, known_revisions, read_revision
 
+    if isinstance(location := folder.database_location, str):
+        return _reads_archive(location), ""
     known = known_revisions()
     try:
         revision = read_revision(folder.database)
@@ -84,6 +88,16 @@ def _look_at_database(folder: DataFolder) -> tuple[bool, str]:
     else:
         readable = revision is None or revision in known
     return readable, "" if readable else str(find_copy(folder, known) or "")
+
+
+def _reads_archive(url: str) -> bool:
+    from server.platform.postgresql_schema import measure_archive
+
+    try:
+        measure_archive(url)
+    except SetupError:
+        return False
+    return True
 
 
 def _sum_firmware(settings: Settings) -> str:

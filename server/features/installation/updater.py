@@ -13,7 +13,7 @@ from pathlib import Path
 from server.features.installation.effects import CommandFailedError, Effects
 from server.features.installation.environments import build_environment
 from server.features.installation.installer import INSTALL_BYTES, wait_until_healthy
-from server.features.installation.places import SERVICES, InstallPlaces
+from server.features.installation.places import InstallPlaces
 from server.features.installation.release import RELEASE_FILE, Release, check_signature, read_release
 from server.features.installation.report import UpdateReport, hold
 from server.features.installation.signals import uninterrupted
@@ -263,11 +263,12 @@ class Updater:
     @contextmanager
     def _stopped(self) -> Iterator[None]:
         """Stop all of µ-CAT meanwhile; start it afterwards in any case."""
-        self._effects.run("systemctl", "stop", *reversed(SERVICES))
+        services = self._places.services
+        self._effects.run("systemctl", "stop", *reversed(services))
         try:
             yield
         finally:
-            self._effects.run("systemctl", "start", "--no-block", *SERVICES)
+            self._effects.run("systemctl", "start", "--no-block", *services)
 
     def _read(self, path: Path) -> Switch | None:
         try:

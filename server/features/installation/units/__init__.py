@@ -1,18 +1,15 @@
-"""The services of an installed robot, and the command `mucat` of its shell."""
+"""The services of an installed robot or lab, and the command `mucat` of its shell."""
 
 from pathlib import Path
 
 from server.features.installation.places import USER, InstallPlaces
 
 FOLDER = Path(__file__).parent
-UNITS = (
-    "mucat-runtime.service",
-    "mucat.service",
-    "mucat-update.path",
-    "mucat-update.service",
-    "mucat-recover.service",
-)
-"""Files beside this one, with `{data}`, `{current}` and others for the places of the installation."""
+RECOVER = "mucat-recover.service"
+UPDATE = ("mucat-update.path", "mucat-update.service")
+"""The services of updates from the page, which a lab's page does not offer.
+
+All are files beside this one, with `{data}`, `{current}` and others for the places of the installation."""
 
 JOURNAL = """# By mucat install: what all services say stays within 100 MB of the card.
 [Journal]
@@ -29,7 +26,7 @@ def write_units(places: InstallPlaces) -> dict[str, str]:
     common = (FOLDER / "service").read_text(encoding="utf-8").format(**values, user=USER)
     return {
         name: (FOLDER / name).read_text(encoding="utf-8").format(**values, common=common.strip())
-        for name in UNITS
+        for name in (*places.services, RECOVER, *(() if places.lab else UPDATE))
     }
 
 

@@ -24,8 +24,8 @@ class PowerCutError(Exception):
 class Computer:
     """Its files are below `root`; `commands` are those that it was given, `broken` those that fail."""
 
-    def __init__(self, root: Path, *, pi: bool = True) -> None:
-        self.places = InstallPlaces(root)
+    def __init__(self, root: Path, *, pi: bool = True, lab: bool = False) -> None:
+        self.places = InstallPlaces(root, lab=lab)
         self.commands: list[str] = []
         self.lines: list[str] = []
         self.broken: dict[str, str] = {}
@@ -66,7 +66,10 @@ class Computer:
                     item[-1] = ",".join(filter(None, [*item[-1].split(","), rest[-1]]))
             (etc / "group").write_text("".join(":".join(fields) + "\n" for fields in lines))
         elif program == "install":
-            Path(rest[-1]).mkdir(parents=True)
+            if rest[0] == "-d":
+                Path(rest[-1]).mkdir(parents=True)
+            else:
+                Path(rest[-1]).touch()
         elif rest[:2] == ["-m", "venv"]:
             (Path(rest[-1]) / "bin").mkdir(parents=True)
             shared = str("--system-site-packages" in rest).lower()

@@ -339,9 +339,43 @@ def test_no_crash_fills_the_card() -> None:
         assert "LimitCORE=0" in units[name].splitlines()
 
 
+def test_a_lab_has_services_and_needs_of_its_own(tmp_path: Path, release: Path) -> None:
+    dry = Computer(tmp_path / "dry", lab=True)
+    dry.installer(dry.effects(dry=True)).install(read_release(release))
+    assert any("mucat-lab.service" in line for line in dry.lines)
+    assert not any("mucat-runtime" in line for line in dry.lines)
+    computer = Computer(tmp_path / "pi", lab=True)
+    install(computer, release)
+    places = computer.places
+    units = {file.name: file.read_text() for file in places.units.iterdir()}
+    assert "bin/mucat lab run\n" in units["mucat-lab.service"]
+    assert units.keys() == {"mucat-lab.service", "mucat-recover.service"}
+    assert any(line == "systemctl restart mucat-lab.service" for line in computer.commands)
+    # No pins, no camera, no serial line.
+    assert "mucat" not in (tmp_path / "pi/etc/group").read_text()
+    assert (tmp_path / "pi/boot/firmware/config.txt").read_text() == CONFIG_TXT
+    assert load(places.config).robot.mode == "emulated"
+    # Without the option it stays one, also for the services of a later version.
+    assert write_units(InstallPlaces(places.root)).keys() == units.keys()
+    computer.installer(computer.effects()).uninstall()
+    assert list(places.units.iterdir()) == []
+    assert places.lab_mark.exists()
+
+
+def test_a_lab_does_not_take_the_place_of_a_robot(tmp_path: Path, release: Path) -> None:
+    computer = Computer(tmp_path / "pi")
+    install(computer, release)
+    computer.places = InstallPlaces(tmp_path / "pi", lab=True)
+    before = computer.tree()
+    with pytest.raises(SetupError, match="A robot is installed here"):
+        install(computer, release)
+    assert computer.tree() == before
+
+
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="there is no systemd")
-def test_systemd_accepts_the_units(tmp_path: Path) -> None:
-    places = InstallPlaces(tmp_path)
+@pytest.mark.parametrize("lab", [False, True])
+def test_systemd_accepts_the_units(tmp_path: Path, lab: bool) -> None:
+    places = InstallPlaces(tmp_path, lab=lab)
     (tmp_path / "opt/mucat/current/bin").mkdir(parents=True)
     for link in (places.current, places.previous):
         program = link / "bin/mucat"

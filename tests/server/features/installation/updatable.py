@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from server.features.installation.places import SERVICES
 from server.features.installation.release import read_release
 from server.features.installation.report import UpdateReport
 from server.features.installation.survey import Survey
@@ -80,7 +79,7 @@ class UpdatableComputer(Computer):
         if answered.returncode != 0:
             return answered
         text = list(command)
-        if text[0] == "systemctl" and set(SERVICES) <= set(text):
+        if text[0] == "systemctl" and set(self.places.services) <= set(text):
             self.running = ""
             if text[1] != "stop":
                 self.start()
