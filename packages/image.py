@@ -16,7 +16,7 @@ from pathlib import Path
 from packages.architectures import ARCHITECTURES, PackagingError
 from packages.commands import run
 from packages.mirror import find_mirror
-from packages.release import build_release
+from packages.release import LAB_EXTRAS, build_release
 from packages.sysroot import SUITE
 from packages.wheels import DIST
 from robot_runtime.places import BUILD
@@ -28,6 +28,7 @@ DEBIAN = ("python3", "python3-venv", "ca-certificates", "openssl", "avrdude")
 """avrdude uploads the communication test to the emulated board."""
 TOOLS = "make image installs it"
 ENVIRONMENT, DATA = "/opt/mucat", "/data"
+REQUIREMENT = f"mucat[emulator,{','.join(LAB_EXTRAS)}]"
 NUMBER = 999
 """Of the user and group `mucat`."""
 INSTALL = f"""
@@ -36,7 +37,7 @@ groupadd --gid {NUMBER} mucat
 useradd --uid {NUMBER} --gid mucat --no-create-home --home-dir {DATA} --shell /usr/sbin/nologin mucat
 install -d -m 700 -o mucat -g mucat {DATA}
 python3 -m venv {ENVIRONMENT}
-{ENVIRONMENT}/bin/pip install --quiet --no-index --find-links /release --no-cache-dir 'mucat[emulator]'
+{ENVIRONMENT}/bin/pip install --quiet --no-index --find-links /release --no-cache-dir '{REQUIREMENT}'
 ln -s {ENVIRONMENT}/bin/mucat /usr/local/bin/mucat
 """
 CONFIG = (
@@ -76,7 +77,7 @@ def build_image(secret: Path, dist: Path) -> Path:
     archive = dist / f"mucat-{VERSION}-{machine}.oci.tar"
     with _folder() as root:
         _make_root(root, ARCHITECTURES[machine].debian)
-        release = build_release(secret, machine, PYTHON, root.with_name("release"))
+        release = build_release(secret, machine, PYTHON, root.with_name("release"), lab=True)
         _install(root, release)
         dist.mkdir(exist_ok=True)
         archive.unlink(missing_ok=True)
