@@ -1,4 +1,7 @@
-"""docs/reference/http.md: every operation of the HTTP interface and its types, from the OpenAPI document."""
+"""docs/reference/http.md: every operation of the HTTP interface and its types, from the OpenAPI document.
+
+Types of requests are described field by field; of the types of answers alone it names the fields.
+"""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, cast
@@ -23,10 +26,41 @@ def http_page(document: Schema) -> str:
         rows = [_row(name, operation) for name, operation in operations if tag in operation["tags"]]
         parts += [f"## {tag[0].upper()}{tag[1:]}\n"]
         parts += [table(("operation", "needs", "request", "answer", "meaning"), rows)]
-    parts.append("## Types\n")
-    for name, schema in document["components"]["schemas"].items():
-        parts += [f"### {name}\n", *_type(schema)]
+    types = document["components"]["schemas"]
+    sent = _reach(
+        types, {name for _, operation in operations for name in _names(operation.get("requestBody"))}
+    )
+    parts.append("## Types of requests\n")
+    for name in filter(sent.__contains__, types):
+        parts += [f"### {name}\n", _sent(types[name])]
+    parts.append(
+        "## Types of answers\n\nEach field is named, with its type where that is one of these. "
+        "The OpenAPI document has their meanings.\n"
+    )
+    for name in types:
+        if name not in sent:
+            parts += [f"### {name}\n", _answered(types[name])]
     return page("HTTP", SOURCE, *parts)
+
+
+def _reach(types: Schema, start: set[str]) -> set[str]:
+    """Return the names of types and of all types within them."""
+    reached: set[str] = set()
+    while start:
+        reached |= start
+        start = {inner for name in start for inner in _names(types[name])} - reached
+    return reached
+
+
+def _names(schema: object) -> Iterator[str]:
+    """Yield the names of the types that a part of the document refers to."""
+    if isinstance(schema, dict):
+        if "$ref" in schema:
+            yield schema["$ref"].rpartition("/")[2]
+        schema = list(schema.values())
+    if isinstance(schema, list):
+        for part in schema:
+            yield from _names(part)
 
 
 def _row(name: str, operation: Schema) -> tuple[str, ...]:
@@ -54,7 +88,7 @@ def _answers(operation: Schema) -> Iterator[str]:
     for status, response in operation["responses"].items():
         if status.startswith("2"):
             contents = [_content(*content) for content in response.get("content", {}).items()]
-            yield " ".join((status, *contents))
+            yield " ".join((*((status,) if status != "200" or not contents else ()), *contents))
 
 
 def _content(media_type: str, content: Schema) -> str:
@@ -65,26 +99,34 @@ def _content(media_type: str, content: Schema) -> str:
     )
 
 
-def _type(schema: Schema) -> Iterator[str]:
-    if description := schema.get("description"):
-        yield " ".join(description.split()) + "\n"
+def _sent(schema: Schema) -> str:
+    """Return the text of a request's type: a line for each field, or what it is."""
     required = schema.get("required", ())
-    rows = [
-        (
-            f"`{name}`" + ("" if name in required else " (optional)"),
-            _describe(field),
-            " ".join(field.get("description", "").split()),
-        )
+    lines = []
+    for name, field in schema.get("properties", {}).items():
+        type_ = _describe(field) + ("" if name in required else ", optional")
+        meaning = " ".join(field.get("description", "").split())
+        lines.append(f"- `{name}` ({type_})" + (f": {meaning}" if meaning else "") + "\n")
+    return "".join(lines) or _describe(schema) + "\n"
+
+
+def _answered(schema: Schema) -> str:
+    """Return the text of an answer's type: the names of its fields, with their named types, or what it is."""
+    fields = [
+        " ".join((f"`{name}`", *(_link(inner) for inner in dict.fromkeys(_names(field)))))
         for name, field in schema.get("properties", {}).items()
     ]
-    yield table(("field", "type", "meaning"), rows) if rows else _describe(schema) + "\n"
+    return (", ".join(fields) or _describe(schema)) + "\n"
+
+
+def _link(name: str) -> str:
+    return f"[{name}](#{name.lower()})"
 
 
 def _describe(schema: Schema) -> str:
     """Return a schema's short description; named types are links."""
     if reference := schema.get("$ref"):
-        name = cast("str", reference).rpartition("/")[2]
-        return f"[{name}](#{name.lower()})"
+        return _link(cast("str", reference).rpartition("/")[2])
     for key in ("anyOf", "oneOf"):
         if choices := schema.get(key):
             return " or ".join(dict.fromkeys(map(_describe, choices)))

@@ -1,13 +1,14 @@
 import shutil
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from server import openapi
 from server.http.reference import http_page
 
-DOCUMENT = {
+DOCUMENT: dict[str, Any] = {
     "paths": {
         "/api/things": {
             "post": {
@@ -48,8 +49,20 @@ def test_an_operation_and_its_types_are_described() -> None:
         "| `POST /api/things` | operator | `?name` (required), [Thing](#thing) | 201 null | Make a thing. |"
         in page
     )
-    assert "| `size` | number 0 to 10 | m |" in page
-    assert "| `kind` (optional) | `a`, `b` or null |  |" in page
+    assert "- `size` (number 0 to 10): m\n" in page
+    assert "- `kind` (`a`, `b` or null, optional)\n" in page
+
+
+def test_of_an_answer_the_fields_are_named() -> None:
+    answer = {"$ref": "#/components/schemas/Box"}
+    operation = DOCUMENT["paths"]["/api/things"]["post"] | {
+        "responses": {"200": {"content": {"application/json": {"schema": answer}}}}
+    }
+    box = {"properties": {"name": {"type": "string"}, "things": {"items": {"$ref": "#/.../Thing"}}}}
+    schemas = DOCUMENT["components"]["schemas"] | {"Box": box}
+    page = http_page({"paths": {"/api/things": {"post": operation}}, "components": {"schemas": schemas}})
+    assert "| `?name` (required), [Thing](#thing) | [Box](#box) | Make a thing. |" in page
+    assert "### Box\n\n`name`, `things` [Thing](#thing)\n" in page
 
 
 def test_the_check_fails_where_an_operation_is_missing(
