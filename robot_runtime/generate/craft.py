@@ -39,13 +39,7 @@ def craft_page() -> str:
     ]
     assert set(_ENTRIES) == {field.name for field in fields(SensorQuality)}
     origins = [
-        (
-            f"`{number.name}`",
-            _shown(getattr(plain, number.name)),
-            number.metadata["origin"],
-            number.metadata["spread"],
-        )
-        for number in numbers
+        (f"`{number.name}`", number.metadata["origin"], number.metadata["spread"]) for number in numbers
     ]
     return page(
         "Craft",
@@ -53,7 +47,7 @@ def craft_page() -> str:
         fill(
             "craft",
             entries=table(("entry", "range", "default", "unit", "meaning"), rows),
-            origins=table(("entry", "default", "origin", "spread"), origins),
+            origins=table(("entry", "origin of the default", "spread"), origins),
             sensors=table(("entry", "meaning", *(f"`{name}`" for name in sensors)), defaults),
         ),
     )

@@ -35,8 +35,8 @@ LIMITS = (
 
 def missions_page() -> str:
     """Return the whole text of missions.md."""
-    leaves = [cls for cls in NODES.values() if issubclass(cls, Leaf)]
-    branches = [cls for cls in NODES.values() if issubclass(cls, Branch)]
+    leaves: list[type[Leaf]] = [cls for cls in NODES.values() if issubclass(cls, Leaf)]
+    branches: list[type[Branch]] = [cls for cls in NODES.values() if issubclass(cls, Branch)]
     text = fill(
         "missions",
         kilobytes=BYTES_MAX // 1000,
@@ -45,24 +45,27 @@ def missions_page() -> str:
         levels=LEVELS_MAX,
         document=table(("entry", "content", "without it"), DOCUMENT),
         limits=table(("in `[limits]`", "unit", "meaning"), LIMITS),
-        leaves=table(("leaf", "steers", "meaning"), map(_leaf_row, leaves)),
-        branches=table(("branch", "steps", "meaning"), map(_branch_row, branches)),
+        leaves=", ".join(f"[{cls.do}](#{cls.do})" for cls in leaves),
+        branches=", ".join(f"[{cls.do}](#{cls.do})" for cls in branches),
     )
     parts = [text]
-    for cls in (*leaves, *branches):
-        parts += [f"## {cls.do}\n", f"{_meaning(cls)}\n"]
+    rules: dict[type[MissionNode], str] = {
+        **{leaf: _steers(leaf) for leaf in leaves},
+        **{branch: _steps(branch) for branch in branches},
+    }
+    for cls, rule in rules.items():
+        parts += [f"## {cls.do}\n", f"{_meaning(cls)} {rule}\n"]
         if rows := list(_field_rows(cls)):
             parts.append(table(("field", "type", "unit", "without it", "meaning"), rows))
     return page("Missions", SOURCE, *parts)
 
 
-def _leaf_row(cls: type[Leaf]) -> tuple[str, ...]:
-    return f"[{cls.do}](#{cls.do})", ", ".join(sorted(cls.claims)), _first_sentence(cls)
+def _steers(cls: type[Leaf]) -> str:
+    return f"Steers: {', '.join(sorted(cls.claims)) or 'nothing'}."
 
 
-def _branch_row(cls: type[Branch]) -> tuple[str, ...]:
-    count = f"{cls.least}" if cls.most == cls.least else f"{cls.least} at least"
-    return f"[{cls.do}](#{cls.do})", count, _first_sentence(cls)
+def _steps(cls: type[Branch]) -> str:
+    return f"Steps: {cls.least}{'' if cls.most == cls.least else ' at least'}."
 
 
 def _field_rows(cls: type[MissionNode]) -> Iterator[tuple[str, ...]]:
@@ -84,7 +87,3 @@ def _default(field: "Field[typing.Any]") -> str:
 
 def _meaning(cls: type[MissionNode]) -> str:
     return " ".join((cls.__doc__ or "").split())
-
-
-def _first_sentence(cls: type[MissionNode]) -> str:
-    return _meaning(cls).split(". ")[0].rstrip(".") + "."

@@ -9,7 +9,7 @@ from robot_runtime.config import Config
 from robot_runtime.contract.commands import COMMANDS, RobotCommand, StopCommand, http_commands, is_required
 from robot_runtime.contract.documents import Document, TunableParameter
 from robot_runtime.contract.hints import Hint, read_fields
-from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS, FRAME_BYTES_MAX, PACKETS, Packet
+from robot_runtime.contract.packets import DEFINITIONS_HASH, ENUMERATIONS, FRAME_BYTES_MAX, PACKETS
 from robot_runtime.contract.packets.layout import C_TYPES, Record, Text, Wire
 from robot_runtime.contract.published_events import PublishedEvent
 from robot_runtime.contract.topics import TOPICS, AnyTopic, Kind
@@ -36,7 +36,7 @@ def commands_page() -> str:
     for name, cls in COMMANDS.items():
         parts += [f"## {name}\n", f"{_one_line(cls)}\n"]
         if rows := list(_command_fields(cls)):
-            parts.append(table(("field", "type", "", "meaning"), rows))
+            parts.append(table(("field", "type", "meaning"), rows))
     return page("Commands", COMMANDS_SOURCE, *parts)
 
 
@@ -56,8 +56,8 @@ def _command_row(cls: type[RobotCommand]) -> tuple[str, ...]:
 def _command_fields(cls: type[RobotCommand]) -> Iterator[tuple[str, ...]]:
     hints = read_fields(cls)
     for field in fields(cls):
-        need = "" if is_required(field) else "optional"
-        yield f"`{field.name}`", describe_type(hints[field.name]), need, field.metadata.get("description", "")
+        type_ = describe_type(hints[field.name]) + ("" if is_required(field) else ", optional")
+        yield f"`{field.name}`", type_, field.metadata.get("description", "")
 
 
 def describe_type(hint: Hint) -> str:
@@ -83,26 +83,30 @@ def describe_type(hint: Hint) -> str:
 
 def topics_page() -> str:
     """Return the whole text of topics.md."""
-    head = ("topic", "number", "kind", "sender", "recorded", "", "meaning")
+    head = ("topic", "number", "kind", "sender", "", "meaning")
     parts = [fill("topics"), table(head, map(_topic_row, TOPICS))]
     for topic in TOPICS:
         if topic.kind in (Kind.ROWS, Kind.DOCUMENTS):
             parts += [f"## {topic.name}\n", f"{_one_line(topic.record)}\n"]
-            parts.append(table(("field", "type", "meaning"), _topic_fields(topic.record)))
+            types = () if issubclass(topic.record, Record) else ("type",)
+            parts.append(table(("field", *types, "meaning"), _topic_fields(topic.record)))
     return page("Topics", TOPICS_SOURCE, *parts)
 
 
 def _topic_row(topic: AnyTopic) -> tuple[str, ...]:
     described = topic.kind in (Kind.ROWS, Kind.DOCUMENTS)
     name = f"[{topic.name}](#{topic.name})" if described else f"`{topic.name}`"
-    rules = [rule for rule, holds in (("newest only", topic.newest_only), ("lines", topic.lines)) if holds]
+    rules = {
+        "newest only": topic.newest_only,
+        "lines": topic.lines,
+        "not recorded": not topic.recorded,
+    }
     return (
         name,
         str(topic.id),
         topic.kind.name.lower(),
         topic.sender,
-        "yes" if topic.recorded else "",
-        ", ".join(rules),
+        ", ".join(rule for rule, holds in rules.items() if holds),
         topic.meaning,
     )
 
@@ -111,7 +115,7 @@ def _topic_fields(record: type[Record] | type[Document] | type[PublishedEvent]) 
     if issubclass(record, Record):
         for name, wire in record.wires.items():
             count = f" × {wire.count}" if wire.count > 1 else ""
-            yield f"`{name}`", f"number{count}", ", ".join(part for part in (wire.unit, wire.meaning) if part)
+            yield f"`{name}`{count}", ", ".join(part for part in (wire.unit, wire.meaning) if part)
         return
     hints = read_fields(record)
     for field in fields(record):
@@ -126,36 +130,30 @@ def events_page() -> str:
 
 def packets_page() -> str:
     """Return the whole text of packets.md."""
-    packets = table(("type", "packet", "bytes", "reliable"), map(_packet_row, PACKETS.values()))
-    parts = [fill("packets", packets=packets, frame=FRAME_BYTES_MAX, definitions=DEFINITIONS_HASH)]
+    parts = [fill("packets", frame=FRAME_BYTES_MAX, definitions=DEFINITIONS_HASH)]
     for packet in PACKETS.values():
-        parts += [f"## {packet.__name__}\n", f"`0x{packet.type:02X}`. {_one_line(packet)}\n"]
+        reliable = ", reliable" if packet.reliable else ""
+        lead = f"`0x{packet.type:02X}`, {packet.describe_size()} bytes{reliable}. {_one_line(packet)}\n"
+        parts += [f"## {packet.__name__}\n", lead]
         rows = [_number_row(name, wire) for name, wire in packet.wires.items()]
         rows += [_text_row(*packet.tail)] if packet.tail else []
         if rows:
-            parts.append(table(("field", "on the wire", "one count is", "meaning"), rows))
+            parts.append(table(("field", "on the wire; one count", "meaning"), rows))
     parts.append("## Flags and codes\n")
     for enumeration in ENUMERATIONS:
-        members = ((str(member.value), f"`{member.name}`") for member in enumeration)
-        parts += [f"### {enumeration.__name__}\n", f"{enumeration.__doc__}\n"]
-        parts.append(table(("value", "name"), members))
+        members = ", ".join(f"{member.value} `{member.name}`" for member in enumeration)
+        parts += [f"### {enumeration.__name__}\n", f"{_one_line(enumeration)}\n", f"{members}\n"]
     return page("Packets", PACKETS_SOURCE, *parts)
 
 
-def _packet_row(packet: type[Packet]) -> tuple[str, ...]:
-    reliable = "yes" if packet.reliable else ""
-    link = f"[{packet.__name__}](#{packet.__name__.lower()})"
-    return f"`0x{packet.type:02X}`", link, packet.describe_size(), reliable
-
-
 def _number_row(name: str, wire: Wire) -> tuple[str, ...]:
-    type_ = C_TYPES[wire.code] + (f" × {wire.count}" if wire.count > 1 else "")
-    step = f"{wire.scale:.6g} {wire.unit}".strip() if wire.scale != 1 or wire.unit else ""
-    return f"`{name}`", f"`{type_}`", step, wire.meaning
+    type_ = f"`{C_TYPES[wire.code]}`" + (f" × {wire.count}" if wire.count > 1 else "")
+    step = f"; {wire.scale:.6g} {wire.unit}".rstrip() if wire.scale != 1 or wire.unit else ""
+    return f"`{name}`", type_ + step, wire.meaning
 
 
 def _text_row(name: str, text: Text) -> tuple[str, ...]:
-    return f"`{name}`", f"`uint8_t` length, then at most {text.max_bytes} bytes of UTF-8", "", text.meaning
+    return f"`{name}`", f"`uint8_t` length, then at most {text.max_bytes} bytes of UTF-8", text.meaning
 
 
 def faults_page() -> str:
@@ -171,17 +169,8 @@ def faults_page() -> str:
         ("fault", "within", "action", "alarm", "message", "consequences"),
         (_fault_row(name, fault) for name, fault in ROBOT_FAULTS.items()),
     )
-    text = fill("faults", states=_states(), transitions=transitions, faults=faults)
+    text = fill("faults", transitions=transitions, faults=faults)
     return page("States and faults", FAULTS_SOURCE, text)
-
-
-def _states() -> str:
-    """Return one row for each state, one column for each trigger, and the next state where they meet."""
-    states = list(dict.fromkeys(transition.before for transition in TRANSITIONS))
-    triggers = list(dict.fromkeys(transition.trigger for transition in TRANSITIONS))
-    after = {(transition.before, transition.trigger): transition.after for transition in TRANSITIONS}
-    rows = [(f"`{state}`", *(after.get((state, trigger), "") for trigger in triggers)) for state in states]
-    return table(("state", *triggers), rows)
 
 
 def _fault_row(name: str, fault: FaultRule) -> tuple[str, ...]:
