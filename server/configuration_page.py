@@ -1,7 +1,7 @@
 """docs/reference/configuration.md: every entry of robot.toml.
 
-Names, values and defaults are those of the configuration's dataclasses. The meaning of an entry is the
-comment beside it in robot.toml, so that file and page say the same.
+Names, values and defaults are those of the configuration's dataclasses; their summaries introduce the
+sections. The meaning of an entry is the comment beside it in robot.toml, so that file and page say the same.
 """
 
 import json
@@ -35,7 +35,8 @@ def configuration_page(robot_toml: str) -> str:
     meanings = read_comments(robot_toml)
     parts = [fill("configuration")]
     for name, cls in list_sections().items():
-        parts += [f"## `[{name}]`\n", " ".join((cls.__doc__ or "").split()) + "\n"]
+        summary = (cls.__doc__ or "").partition("\n\n")[0]
+        parts += [f"## `[{name}]`\n", " ".join(summary.split()) + "\n"]
         parts.append(table(("entry", "value", "default", "meaning"), _rows(cls, name, cls(), meanings)))
     return page("Configuration", SOURCE, *parts)
 

@@ -8,9 +8,9 @@ from robot_runtime.contract.limits import FilmRate
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FilmConfig:
-    """Film of recorded sessions, in the size of the camera's stream; `rate` in Hz, at most the stream's.
+    """Film of recorded sessions, until the page chooses another, also for later starts; `rate` in Hz.
 
-    What is chosen on the page replaces it, also for later starts.
+    It has the size of the camera's stream, and at most its rate.
     """
 
     record: bool = False
