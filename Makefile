@@ -122,11 +122,12 @@ generate: .venv/.ready frontend/node_modules/.ready ## write the generated files
 	$(PYTHON) -m robot_runtime.generate
 	$(PYTHON) -m server.openapi | (cd frontend && npm run --silent generate)
 	$(PYTHON) -m server.openapi --reference
+	$(PYTHON) -m tests.proofs.page
 
 bench: setup-test .venv/.ready-bench host-firmware ## measure; a part with ONLY=link; against another commit with COMPARE=v0.1.0
 	$(PYTHON) -m bench$(if $(COMPARE),.against $(COMPARE))$(if $(LONG), --long) $(ONLY)
 
-proofs: setup-test .venv/.ready-bench host-firmware ## every long proof, with one report in build/proofs; goes on where it stopped
+proofs: setup-test .venv/.ready-bench host-firmware ## every long proof, with one report in build/proofs and the results in docs/develop/proofs.md; goes on where it stopped
 	@$(PYTHON) -m tests.proofs.report $(ONLY)
 
 figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in docs/pictures, from a run of its scenario
@@ -140,7 +141,7 @@ notebooks: setup-test host-firmware ## run the notebooks of docs/use/notebooks, 
 screenshots: setup-test ## every page at both sizes and in both themes, into build/screenshots
 	$(PYTHON) -m tests.browser.screenshots build/screenshots
 
-control: setup-test host-firmware ## remake the tables of docs/develop/proofs/control.md; those of heading, pitch and roll are printed
+control: setup-test host-firmware ## remake the tables of docs/develop/controllers.md; those of heading, pitch and roll are printed
 	$(PYTHON) -m bench.control
 	$(PYTHON) -m bench.turns
 

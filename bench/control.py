@@ -1,7 +1,7 @@
 """Compares the depth controllers in simulated time, on the nominal robot and on variants of it.
 
 In each variant one property is 30 % off. `measure` gives the figures of the best controller.
-`python -m bench.control [FILE]` writes the table of all into docs/develop/proofs/control.md, and that of the
+`python -m bench.control [FILE]` writes the table of all into docs/develop/controllers.md, and that of the
 best controller with and without the numbers of crafts that differ in more. The figures use the true depth of
 the sensor, without noise.
 """
@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor
 from pathlib import Path
 
-from bench.results import PROOFS
+from bench.results import CONTROLLERS as PAGE
 from robot_runtime.control.controllers import CONTROLLERS
 from robot_runtime.control.craft_gains import craft_gains
 from robot_runtime.simulation.water.parameters import SimulationParameters
@@ -82,24 +82,36 @@ def measure() -> dict[str, float]:
 
 
 def table(results: dict[tuple[str, str], list[DepthFigures]]) -> str:
-    """Return the worst figures as a Markdown table."""
+    """Return the worst figures of the nominal robot, and of all variants, as a Markdown table."""
     titles = {controller.name: controller.title for controller in CONTROLLERS["depth"]}
     lines = [
         "| controller | craft | RMSE, cm | overshoot, % | settling, s | steady p-p, cm | reached after, s | "
         "to bang-bang | strokes | sine RMSE, cm |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
-    for (name, craft), runs in results.items():
-        figures = worst(runs)
-        reached = " / ".join("-" if time >= STEP else f"{time:.2f}" for time in figures.crossings)
-        settling = f"{figures.settling:.1f}" if figures.settling < STEP - 0.5 else "never"
-        lines.append(
-            f"| {titles[name]} | {craft} | {100 * figures.rmse:.1f} | {100 * figures.overshoot:.1f} "
-            f"| {settling} | {100 * figures.steady:.1f} | {reached} "
-            f"| {crossing_ratio(runs, results[THESIS, craft]):.2f} | {figures.strokes} "
-            f"| {100 * figures.sine:.1f} |"
-        )
+    for name, title in titles.items():
+        crafts = {craft: runs for (other, craft), runs in results.items() if other == name}
+        nominal, *_ = crafts
+        lines.append(_row(title, nominal, {nominal: crafts[nominal]}, results))
+        lines.append(_row(title, f"worst of {len(crafts)}", crafts, results))
     return "\n".join(lines)
+
+
+def _row(
+    title: str,
+    name: str,
+    crafts: Mapping[str, list[DepthFigures]],
+    results: Mapping[tuple[str, str], list[DepthFigures]],
+) -> str:
+    figures = worst([run for runs in crafts.values() for run in runs])
+    ratio = max(crossing_ratio(runs, results[THESIS, craft]) for craft, runs in crafts.items())
+    reached = " / ".join("-" if time >= STEP else f"{time:.2f}" for time in figures.crossings)
+    settling = f"{figures.settling:.1f}" if figures.settling < STEP - 0.5 else "never"
+    return (
+        f"| {title} | {name} | {100 * figures.rmse:.1f} | {100 * figures.overshoot:.1f} "
+        f"| {settling} | {100 * figures.steady:.1f} | {reached} | {ratio:.2f} | {figures.strokes} "
+        f"| {100 * figures.sine:.1f} |"
+    )
 
 
 def known_table(results: Mapping[str, tuple[DepthFigures, DepthFigures]]) -> str:
@@ -126,7 +138,7 @@ def put(text: str, begin: str, made: str) -> str:
 
 def main() -> None:
     """Write the tables into the document."""
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else PROOFS / "control.md"
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGE
     text = path.read_text(encoding="utf-8")
     text = put(text, _KNOWN, known_table(perform_known()))
     text = put(text, _ALL, table(perform_all(controller.name for controller in CONTROLLERS["depth"])))

@@ -12,8 +12,9 @@ from typing import Any
 from bench.calibration import Slowness
 
 FILE = Path("build/bench.json")
-PROOFS = Path("docs/develop/proofs")
-"""The tables that proofs store."""
+CONTROLLERS = Path("docs/develop/controllers.md")
+STORED = (CONTROLLERS, Path("docs/develop/proofs.md"), Path("tests/proofs/results.json"))
+"""What proofs store in the repository."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +84,13 @@ class Results:
 
 
 def commit() -> str:
-    """Return the commit of the working tree, with a `+` where a file other than a proof's table differs."""
+    """Return the commit of the working tree, with a `+` where a file other than what proofs store differs."""
     head = _git("rev-parse", "--short=10", "HEAD").stdout.strip()
-    # A proof that stores its table would make all that was proven before it count as proven of other code.
-    changed = head and _git("diff", "--quiet", "HEAD", "--", ".", f":(exclude){PROOFS}").returncode
+    # A proof that stores its result would make all that was proven before it count as proven of other code.
+    changed = (
+        head
+        and _git("diff", "--quiet", "HEAD", "--", ".", *(f":(exclude){path}" for path in STORED)).returncode
+    )
     return (head or "unknown") + ("+" if changed else "")
 
 

@@ -1,9 +1,10 @@
 """`python -m tests.proofs.report [PROOF ...]`: every long proof, with one report.
 
 Proofs that mostly wait run beside others that only compute, which get what processor time is left. Those
-whose robot needs the whole computer, and those that measure speed, run alone at the end. The report,
-build/proofs/report.md, is written anew after each proof, also where one fails. Interrupted, it goes on where
-it stopped: what has a result on the same commit is not run again, unless it is named.
+whose robot needs the whole computer, and those that measure speed, run alone at the end. After each proof,
+also one that fails, the report build/proofs/report.md and the manual's table of results are written anew.
+Interrupted, it goes on where it stopped: what has a result on the same commit is not run again, unless it is
+named.
 """
 
 import json
@@ -21,80 +22,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from bench.results import commit, machine
-from tests import beside
+from tests.proofs import page
+from tests.proofs.stages import STAGES, Proof, Stage
 
 FOLDER = Path("build/proofs")
 LINES = 30
 """Last lines of a proof's output that stand in the report."""
 ENDING = (signal.SIGINT, signal.SIGTERM)
 """Ctrl-C, and what make passes on to its command when it is told to end."""
-
-
-@dataclass(frozen=True, slots=True)
-class Proof:
-    """A target of the Makefile, and the statement that it proves."""
-
-    target: str
-    statement: str
-    options: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Lane:
-    """Proofs that begin in this order, so many at once."""
-
-    proofs: tuple[Proof, ...]
-    at_once: int = 1
-    prefix: tuple[str, ...] = ()
-    """The command that runs `make`."""
-
-
-Stage = tuple[Lane, ...]
-"""Lanes that run beside each other."""
-
-# Robots run in real time and have the processor first; computing takes what they leave.
-STAGES: tuple[Stage, ...] = (
-    (
-        # One after the other: three robots at once on two cores are late, and one was stopped for it.
-        Lane(
-            (
-                Proof("chaos", "An hour of faults of all kinds loses nothing that is not counted."),
-                Proof("outages", "Each process that is killed or hangs stops the fins and is back in time."),
-            )
-        ),
-        Lane((Proof("kills", "A killed server leaves no hole in a recording."),)),
-        Lane(
-            (
-                # In simulated time, and so able to wait for robots in real time.
-                Proof("robot-faults", "Each fault of robot and chip stops the fins in time."),
-                Proof("guards", "Each guard is missed by a test when it is taken away."),
-                Proof("hours", "A recording of hours is whole, and an hour's load leaves no memory behind."),
-                Proof("interface", "No request that the interface allows makes the server fail."),
-                Proof("hostile", "No word from outside reaches a build, a file name or a path."),
-                Proof("power", "A power cut loses no row that was acknowledged."),
-                Proof("soak", "No corrupted frame is believed, and no reset loses a message."),
-                Proof("fuzz", "No bytes bring down the firmware's end of the line."),
-                Proof("control", "The depth controllers, on each craft."),
-                Proof("missions", "Each leaf of a mission, and random missions, end safely."),
-            ),
-            at_once=2,
-            prefix=("nice", sys.executable, beside.__file__),
-        ),
-    ),
-    (
-        Lane(
-            (
-                Proof("attacks", "No attack of the security review holds up STOP or the control loop."),
-                Proof(
-                    "services", "Installation, updates and the way back, with systemd and a cut of the power."
-                ),
-                Proof("image-swims", "The container image starts, and its robot swims."),
-                Proof("packages", "The wheels install and swim on fresh systems of each architecture."),
-            )
-        ),
-    ),
-    (Lane((Proof("bench", "The figures and their goals.", ("LONG=1",)),)),),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,6 +118,7 @@ class Run:
             stored = {name: asdict(outcome) for name, outcome in self._outcomes.items()}
             self._file.write_text(json.dumps(stored, indent=2) + "\n")
             (FOLDER / "report.md").write_text(report(self._proofs, self._outcomes, self._now))
+            page.store(proof.target, status == 0, seconds)
             done = sum(map(self._is_known, (proof.target for proof in self._proofs)))
         minutes = f"{_minutes(outcome)} min; {done} of {len(self._proofs)} have a result"
         print(f"\n== {proof.target}: {_verdict(outcome)} after {minutes}", flush=True)

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.proofs import report
-from tests.proofs.report import STAGES, Lane, Proof, ProofOutcome, Stage
+from tests.proofs import page, report
+from tests.proofs.report import ProofOutcome
+from tests.proofs.stages import STAGES, Lane, Proof, Stage
 
 MAKEFILE = """
 good:
@@ -22,7 +23,11 @@ part:
 halted:
 	@trap 'echo robots ended > ended; exit 1' INT; kill -$(PROOF_SIGNAL) $(PROOF_PID); sleep 60
 """
-PROOFS = (Proof("good", "It works."), Proof("bad", "It never fails."), Proof("later", "It goes on."))
+PROOFS = (
+    Proof("good", "It works.", "Once."),
+    Proof("bad", "It never fails.", "Once."),
+    Proof("later", "It goes on.", "Once."),
+)
 
 
 def one_lane(*proofs: Proof) -> tuple[Stage, ...]:
@@ -36,6 +41,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(report, "STAGES", one_lane(*PROOFS))
     monkeypatch.setattr(report, "commit", lambda: "c0ffee")
     monkeypatch.setattr(sys, "argv", ["report"])
+    for path in (page.PAGE, page.RESULTS):
+        path.parent.mkdir(parents=True)
+    page.RESULTS.write_text('{"bad": {"held": true, "minutes": 7}}')
     return tmp_path
 
 
@@ -47,7 +55,7 @@ def outcomes(folder: Path) -> dict[str, ProofOutcome]:
 def test_a_proof_is_run_whole_where_it_is_chosen_by_name(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(report, "STAGES", one_lane(Proof("part", "It is whole.")))
+    monkeypatch.setattr(report, "STAGES", one_lane(Proof("part", "It is whole.", "Once.")))
     monkeypatch.setattr(sys, "argv", ["report", "part"])
     monkeypatch.setenv("ONLY", "part")
     monkeypatch.setenv("MAKEFLAGS", " -- ONLY=part")
@@ -63,6 +71,27 @@ def test_a_failed_proof_is_reported_and_the_next_ones_run(folder: Path) -> None:
     assert "| [later](#later) | It goes on. | held | 0 |" in text
     assert "one was lost" in text
     assert outcomes(folder)["good"].said == "all is well"
+
+
+def test_each_result_is_stored_and_the_page_of_the_manual_is_written(folder: Path) -> None:
+    report.main()
+    results = page.read()
+    assert {name: result["held"] for name, result in results.items()} == {
+        "good": True,
+        "bad": False,
+        "later": True,
+    }
+    assert "| not run |" in (folder / page.PAGE).read_text()
+    text = page.text(PROOFS, results)
+    assert "| It works. | Once. | held | 0 | `make good` |" in text
+    assert "| It never fails. | Once. | **failed** | 0 | `make bad` |" in text
+
+
+def test_the_page_of_the_manual_is_that_of_the_stored_results() -> None:
+    proofs = [proof for stage in STAGES for lane in stage for proof in lane.proofs]
+    results = page.read()
+    assert results.keys() <= {proof.target for proof in proofs}
+    assert page.PAGE.read_text(encoding="utf-8") == page.text(proofs, results)
 
 
 def test_a_proof_with_a_result_on_this_commit_is_not_run_again(folder: Path) -> None:
@@ -91,7 +120,8 @@ def test_an_interrupted_proof_ends_its_robots_has_no_result_and_none_begins_afte
 ) -> None:
     monkeypatch.setenv("PROOF_SIGNAL", signal)
     monkeypatch.setenv("PROOF_PID", f"{os.getpid()}")
-    stages = one_lane(Proof("good", "It works."), Proof("halted", "It waits."), Proof("later", "It goes on."))
+    good, _, later = PROOFS
+    stages = one_lane(good, Proof("halted", "It waits.", "Once."), later)
     monkeypatch.setattr(report, "STAGES", stages)
     assert report.main() == 1
     assert (folder / "ended").exists()

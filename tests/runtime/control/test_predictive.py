@@ -174,7 +174,7 @@ def test_after_a_pause_the_controller_starts_anew() -> None:
 
 @pytest.mark.parametrize("craft", ["nominal", "thrust +30 %", "mass +30 %"])
 def test_in_simulated_water_it_rests_where_the_thesis_controller_oscillates(craft: str) -> None:
-    """The nominal craft, and two of the worst in docs/develop/proofs/control.md."""
+    """The nominal craft, and two of the worst in docs/develop/controllers.md."""
     robot = variants()[craft]
     result = perform(BEST, robot, sine=False)
     assert result.steady <= 0.02
