@@ -69,14 +69,21 @@ def wiring_page() -> str:
     )
     wires = {
         net.name.lower(): table(
-            ("from", "to", "level", "through", "pulled by", "note"),
+            ("from", "to", "level", "remark"),
             (_wire_row(wire) for wire in WIRES if wire.net is net),
         )
         for net in Net
+        if net is not Net.GROUND
     }
+    ground = ", ".join(
+        f"{find_part(wire.sink).title} {wire.sink_pin}" + (f" ({wire.note})" if wire.note else "")
+        for wire in WIRES
+        if wire.net is Net.GROUND
+    )
     text = fill(
         "wiring",
         **wires,
+        ground=ground,
         fins=fins,
         pins=table(("pin", "of the chip", "direction", "joined to", "note"), _pin_rows()),
         imu=IMU_ADDRESS,
@@ -135,9 +142,7 @@ def _wire_row(wire: Conductor) -> tuple[str, ...]:
         f"{find_part(wire.source).title} {wire.source_pin}",
         f"{find_part(wire.sink).title} {wire.sink_pin}",
         _volts(wire.level),
-        wire.through,
-        wire.pull,
-        wire.note,
+        "; ".join(text for text in (wire.through, wire.pull, wire.note) if text),
     )
 
 

@@ -48,7 +48,6 @@ def trim_page() -> str:
         "height": craft.buoyancy_height * 1000,
         "example": 10,
         "example_move": craft.mass * craft.buoyancy_height * tan(10 * pi / 180) / 0.05 * 1000,
-        "four": rest_angle(0.004, craft.buoyancy_height) * 180 / pi,
         "warming": grams - buoyancy_reserve(craft, water_density(25)),
         "aluminium": expansion * ALUMINIUM,
         "plastic": expansion * PLASTIC,
@@ -62,17 +61,14 @@ def trim_page() -> str:
         "effort": 100 * grams * GRAVITY / 1000 / push,
         "weak_effort": 100 * grams * GRAVITY / 1000 / (push * 0.15 / craft.fin_drag),
     }
-    metals = table(
-        ("weight", "counts under water"),
-        ((name, f"{1 - 1000 / density:.2f} of its grams") for name, density in METALS),
-    )
+    metals = ", ".join(f"{name} {1 - 1000 / density:.2f} of its grams" for name, density in METALS)
     rises = table(
         ("reserve", "rises at last at", f"time for {RISE:g} m", "spread"),
-        (_rise_row(craft, reserve) for reserve in (5, 10, 15, 20, 30, 40, 60)),
+        (_rise_row(craft, reserve) for reserve in (5, 10, 15, 20, 30, 40)),
     )
     levels = table(
         ("it tilts by", "centres are apart by", "move"),
-        (_level_row(craft, degrees) for degrees in (2, 5, 10, 15, 22, 30)),
+        (_level_row(craft, degrees) for degrees in (2, 5, 10, 20)),
     )
     waters = table(
         ("temperature", *(f"{name}, {salt} g/kg" if salt else name for name, salt in WATERS)),
@@ -104,7 +100,7 @@ def trim_page() -> str:
         ("temperature", *(name for name, _ in WATERS)),
         (
             (f"{celsius} °C", *(f"{water_density(celsius, salt) / 1000:.4f}" for _, salt in WATERS))
-            for celsius in range(5, 31, 5)
+            for celsius in range(5, 31, 10)
         ),
     )
     return page(
