@@ -20,6 +20,8 @@ from robot_runtime.contract.wiring import (
 from robot_runtime.generate.markdown import fill, page, table
 
 SOURCE = "robot_runtime/contract/wiring.py"
+BOARD_PINS = (*(f"D{number}" for number in range(14)), *(f"A{number}" for number in range(6)))
+"""The pins of the board that have a row of their own."""
 
 
 def parts_page() -> str:
@@ -67,14 +69,13 @@ def wiring_page() -> str:
             for number, fin in enumerate(FINS)
         ),
     )
-    wires = {
-        net.name.lower(): table(
-            ("from", "to", "level", "remark"),
-            (_wire_row(wire) for wire in WIRES if wire.net is net),
-        )
-        for net in Net
-        if net is not Net.GROUND
-    }
+    supply = [wire for wire in WIRES if wire.net is Net.SUPPLY]
+    others = [
+        wire
+        for wire in WIRES
+        if wire.net not in (Net.SUPPLY, Net.GROUND) and not any(_is_at(wire, pin) for pin in BOARD_PINS)
+    ]
+    columns = ("from", "to", "level", "remark")
     ground = ", ".join(
         f"{find_part(wire.sink).title} {wire.sink_pin}" + (f" ({wire.note})" if wire.note else "")
         for wire in WIRES
@@ -82,7 +83,8 @@ def wiring_page() -> str:
     )
     text = fill(
         "wiring",
-        **wires,
+        supply=table(columns, map(_wire_row, supply)),
+        others=table(columns, map(_wire_row, others)),
         ground=ground,
         fins=fins,
         pins=table(("pin", "of the chip", "direction", "joined to", "note"), _pin_rows()),
@@ -101,13 +103,8 @@ def chip_pin(pin: str) -> str:
 
 
 def _pin_rows() -> Iterator[tuple[str, ...]]:
-    pins = [f"D{number}" for number in range(14)] + [f"A{number}" for number in range(6)]
-    for pin in pins:
-        wires = [
-            wire
-            for wire in WIRES
-            if ("board", pin) in ((wire.source, wire.source_pin), (wire.sink, wire.sink_pin))
-        ]
+    for pin in BOARD_PINS:
+        wires = [wire for wire in WIRES if _is_at(wire, pin)]
         if pin in SPARE_OUTPUTS:
             yield pin, chip_pin(pin), "output", "nothing", SPARE_OUTPUTS[pin]
         elif pin in SPARE_PINS:
@@ -122,6 +119,10 @@ def _pin_rows() -> Iterator[tuple[str, ...]]:
             )
 
 
+def _is_at(wire: Conductor, pin: str) -> bool:
+    return ("board", pin) in ((wire.source, wire.source_pin), (wire.sink, wire.sink_pin))
+
+
 def _direction(wire: Conductor) -> str:
     if wire.net is Net.I2C:
         return "open drain"
@@ -134,7 +135,8 @@ def _far_end(wire: Conductor) -> str:
 
 
 def _notes(wires: list[Conductor]) -> str:
-    return "; ".join(dict.fromkeys(text for wire in wires for text in (wire.through, wire.pull) if text))
+    texts = (text for wire in wires for text in (wire.through, wire.pull, wire.note))
+    return "; ".join(dict.fromkeys(text for text in texts if text))
 
 
 def _wire_row(wire: Conductor) -> tuple[str, ...]:
