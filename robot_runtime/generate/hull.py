@@ -92,24 +92,23 @@ def hull_page() -> str:
         ),
     )
     weights = table(
-        ("part", "g each", "g", "forward, mm", "down, mm", "origin"),
+        ("part", "g in all", "forward, mm", "down, mm", "origin"),
         (*map(_weight_row, budget.parts), _total_row(budget.mass)),
     )
     consumers = power.list_consumers()
     total = sum(consumer.count * consumer.current for consumer in consumers)
     currents = table(
-        ("part", "mA each", "mA", "origin"),
+        ("part", "mA in all", "origin"),
         (
             *(
                 (
                     _name(consumer.title, consumer.count),
-                    f"{1000 * consumer.current:.0f}",
                     f"{1000 * consumer.count * consumer.current:.0f}",
                     consumer.origin,
                 )
                 for consumer in consumers
             ),
-            ("**in all**", "", f"**{1000 * total:.0f}**", ""),
+            ("**in all**", f"**{1000 * total:.0f}**", ""),
         ),
     )
     times = table(
@@ -126,7 +125,6 @@ def hull_page() -> str:
 def _weight_row(part: HullPart) -> tuple[str, ...]:
     return (
         _name(part.title, part.count),
-        f"{1000 * part.mass:.0f}",
         f"{1000 * part.count * part.mass:.0f}",
         f"{1000 * part.forward:.0f}",
         f"{1000 * part.down:.0f}",
@@ -139,7 +137,7 @@ def _name(title: str, count: int) -> str:
 
 
 def _total_row(mass: float) -> tuple[str, ...]:
-    return "**in all**", "", f"**{1000 * mass:.0f}**", "", "", ""
+    return "**in all**", f"**{1000 * mass:.0f}**", "", "", ""
 
 
 def _states(craft: Craft, reserve: float) -> list[tuple[str, float]]:
