@@ -8,7 +8,7 @@ export const NAMES = ['imu.rate', 'imu.force', 'motor.angle', 'imu.attitude'].fl
 export const SECONDS = Number(new URLSearchParams(location.search).get('seconds') ?? 60);
 
 export function startFeed(): LiveFeed {
-  const nobody = { know: () => undefined, check: () => Promise.resolve(true) };
+  const nobody = { know: () => undefined, check: () => Promise.resolve(true), lab: false };
   const feed = new LiveFeed(`ws://${location.host}/api/live`, nobody);
   feed.start();
   return feed;

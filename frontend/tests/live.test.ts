@@ -43,7 +43,7 @@ class ServerEnd {
 }
 
 const YOU = { name: 'Firefox on Linux', role: 'operator', client: 7 };
-const access = { know: vi.fn(), check: vi.fn(() => Promise.resolve(true)) };
+const access = { know: vi.fn(), check: vi.fn(() => Promise.resolve(true)), lab: false };
 const server = () => ServerEnd.opened.at(-1) ?? new ServerEnd();
 let live: Live;
 let end: () => void;
@@ -78,7 +78,7 @@ describe('Live', () => {
     ['wss://robot/api/live', false, false],
   ])('suspects the certificate of %s where HTTP answers (%s)', async (url, answers, suspected) => {
     end();
-    const feed = new LiveFeed(url, { know: vi.fn(), check: vi.fn(() => Promise.resolve(answers)) });
+    const feed = new LiveFeed(url, { ...access, check: vi.fn(() => Promise.resolve(answers)) });
     ({ live } = feed);
     end = feed.start();
     for (let refused = 0; refused < 3; refused += 1) {
@@ -331,6 +331,14 @@ describe('a page at the control lease', () => {
     expect(live.barred).not.toBeNull();
     server().tell(control(7));
     expect(live.barred).toBeNull();
+  });
+
+  it('asks for no control of a lab, which has no robot', () => {
+    access.lab = true;
+    server().greet();
+    server().tell(control(null));
+    access.lab = false;
+    expect(calls).toEqual([]);
   });
 
   it('drives while it may, and says neutral and then nothing as soon as it may not', () => {

@@ -82,17 +82,26 @@ def test_each_robot_has_a_tile_and_stop_reaches_them_all(robots: Page, lab: LabS
     expect(away).to_contain_text("Not seen since the lab started")
     expect(robots.get_by_text("2 of 3 connected")).to_be_visible()
 
+    expect(resting).to_contain_text("No session yet")
+    expect(resting).to_contain_text("open to no other computer")
     robots.get_by_role("button", name="STOP all").click()
     expect(swimming).to_contain_text("Stopped (Zenoh)")
     expect(resting).to_contain_text("Stopped (Zenoh)")
     expect(away.get_by_role("alert").filter(has_text="Has not answered STOP")).to_contain_text(
         "Its page is open to no other computer."
     )
-    expect(robots.get_by_text("2 of 3 robots have stopped.")).to_be_attached()
+    expect(robots.get_by_role("button", name="2 of 3 stopped")).to_be_visible()
     assert [lab.ends[name].stopped for name in ("turtle-1", "turtle-2")] == [1, 1]
+    # From every page of the lab.
+    robots.get_by_role("link", name="Figures").click()
+    expect(robots.get_by_role("heading", name="Figures")).to_be_visible()
     with robots.expect_response("**/api/robots/stop"):
         robots.keyboard.press("Escape")
     assert [lab.ends[name].stopped for name in ("turtle-1", "turtle-2")] == [2, 2]
+    missing = robots.get_by_role("alert").filter(has_text="Not stopped: turtle-3.")
+    missing.get_by_role("link", name="Robots").click()
+    missing.get_by_role("button", name="Close").click()
+    expect(missing).to_be_hidden()
 
     away.get_by_role("button", name="Remove turtle-3 from the lab").click()
     away.get_by_role("button", name="Remove", exact=True).click()
@@ -103,7 +112,6 @@ def test_each_robot_has_a_tile_and_stop_reaches_them_all(robots: Page, lab: LabS
 def test_an_empty_lab_says_how_a_robot_joins(browser: Browser, tmp_path: Path) -> None:
     with LabSite(tmp_path, {}) as lab, operator(browser, lab) as page:
         expect(page.get_by_text("No robot has joined yet")).to_be_visible()
-        expect(page.get_by_role("button", name="STOP all")).to_be_hidden()
         page.get_by_role("button", name="Make a code").click()
         # This lab has no TLS.
         expect(page.get_by_role("alert").filter(has_text="server.tls = true")).to_be_visible()

@@ -22,10 +22,10 @@ export class Control {
   #eager = true;
   #released = false;
 
-  /** @param seen whether somebody can see this page now */
+  /** @param takes whether this page may take control by itself now: somebody can see it */
   constructor(
     private readonly call: ControlCalls,
-    private readonly seen: () => boolean,
+    private readonly takes: () => boolean,
   ) {}
 
   /** whether this page has the control */
@@ -64,7 +64,7 @@ export class Control {
 
   /** Take what is free, where that is for this page to do by itself. */
   readonly consider = (): void => {
-    if (!this.#eager || this.you?.role !== 'operator' || this.now?.holder !== null || !this.seen()) return;
+    if (!this.#eager || this.you?.role !== 'operator' || this.now?.holder !== null || !this.takes()) return;
     this.#eager = false;
     void this.take();
   };

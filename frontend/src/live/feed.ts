@@ -55,7 +55,7 @@ export class LiveFeed {
   /** @param access whoever uses this page; told where the server does not know them any more */
   constructor(
     url: string,
-    private readonly access: Pick<Access, 'know' | 'check'>,
+    private readonly access: Pick<Access, 'know' | 'check' | 'lab'>,
     private readonly encrypted = url.startsWith('wss:'),
   ) {
     this.#socket = new LiveSocket(url, {
@@ -65,10 +65,14 @@ export class LiveFeed {
       bytes: (buffer) => this.#take(buffer),
       roundTrip: (milliseconds) => (this.live.roundTrip = milliseconds),
     });
-    const stop = new Stop(() => this.#socket.send({ op: 'stop' }));
+    const stop = new Stop(
+      () => !access.lab && this.#socket.send({ op: 'stop' }),
+      () => (access.lab ? this.#stopAll() : api.stop()),
+    );
     this.#control = new Control(
       { take: api.takeControl, release: api.releaseControl, takeOver: api.takeControlOver },
-      () => !document.hidden,
+      // A lab has no robot to be controlled.
+      () => !document.hidden && !this.access.lab,
     );
     this.live = new Live(() => this.#steady.now(), stop, this.#control);
     this.pilot = new Pilot({
@@ -114,6 +118,13 @@ export class LiveFeed {
     const { connection, state } = this.live;
     const drives = connection === 'open' && state?.mode === 'manual' && this.#control.mine;
     return drives && !document.hidden && document.hasFocus() ? (this.#control.now?.epoch ?? null) : null;
+  }
+
+  async #stopAll(): Promise<string | null> {
+    const answer = await api.stopAll();
+    if ('problem' in answer) return answer.problem;
+    this.live.stopped = answer.value;
+    return null;
   }
 
   #opened(): void {

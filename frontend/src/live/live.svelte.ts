@@ -1,5 +1,4 @@
 import { createContext } from 'svelte';
-import type { FilmDescription } from '../api';
 import { DOCUMENT_TOPICS, PICTURE_TOPICS, type Alarm, type DebugLine, type Detection, type Documents, type RobotEvent, type Rows, type State } from '../generated/topics';
 import { readDocuments, readPicture, type Block } from './blocks';
 import { calendar, type Instant } from './clock';
@@ -9,7 +8,7 @@ import type { Control } from './control.svelte';
 import { CommTestWatch } from './comm_test.svelte';
 import { freshness, worst, type Freshness } from './freshness';
 import { Lines } from './lines.svelte';
-import type { PartHealth, ScenarioState, Session, SweepSummary, TuningState } from '../api';
+import type { FilmDescription, PartHealth, ScenarioState, Session, StoppedRobot, SweepSummary, TuningState } from '../api';
 import type { Hello } from './messages';
 import { createNewest } from './newest.svelte';
 import { Pace } from './pace';
@@ -107,6 +106,8 @@ export class Live {
   #awaited = false;
   /** whether the board's samples came since the last frame: it is drawn with them */
   #sampled = false;
+  /** what the robots of a lab have answered to the last STOP */
+  stopped = $state.raw<readonly StoppedRobot[]>([]);
   /** the pictures that are looked at, each as often as somebody does */
   readonly #watching: WatchedPicture[] = [];
   /** called where `watched` changes; a recording has no such pictures */

@@ -20,7 +20,11 @@ export class Stop {
   #rest: ReturnType<typeof setTimeout> | undefined;
   #ended = false;
 
-  constructor(private readonly bySocket: () => boolean) {}
+  /** @param byHttp answers why it was not taken; null where it was */
+  constructor(
+    private readonly bySocket: () => boolean,
+    private readonly byHttp: () => Promise<string | null> = api.stop,
+  ) {}
 
   readonly press = (): void => {
     this.bySocket();
@@ -39,7 +43,7 @@ export class Stop {
   async #insist(): Promise<void> {
     for (;;) {
       this.attempts += 1;
-      const refusal = await api.stop();
+      const refusal = await this.byHttp();
       if (refusal === null) break;
       this.problem = refusal;
       await new Promise((resolve) => setTimeout(resolve, RETRY_EVERY));

@@ -10,10 +10,8 @@ export const robots = {
   empty: 'No robot has joined yet',
   howTo: 'Make a code below, and run its command on the robot’s computer within ten minutes.',
   stop: {
-    name: 'STOP all',
-    sending: 'Stopping…',
-    hint: 'Disarms every robot at once, by Zenoh and by HTTPS (Esc)',
-    announced: (stopped: number, all: number) => `${stopped} of ${all} robots have stopped.`,
+    silent: (names: string) => `Not stopped: ${names}.`,
+    silentText: 'It may still swim: use its own page, or lift it out.',
     ways: { zenoh: 'Zenoh', https: 'HTTPS' },
     stopped: (ways: string) => `Stopped (${ways})`,
     notStopped: 'Has not answered STOP',

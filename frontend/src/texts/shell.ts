@@ -87,6 +87,15 @@ export const shell = {
     hint: 'Stop the fins at once (Esc)',
     announced: { idle: '', sending: 'Stopping', confirmed: 'Stopped: the robot is disarmed' },
   },
+  /** of a lab */
+  stopAll: {
+    idle: 'STOP all',
+    sending: 'Stopping',
+    confirmed: 'Stopped',
+    hint: 'Disarm every robot at once (Esc)',
+    announced: { idle: '', sending: 'Stopping', confirmed: 'Stopped' },
+    counted: (stopped: number, all: number) => (all === 0 ? 'No robot' : `${stopped} of ${all} stopped`),
+  },
   robotNow: {
     label: 'Robot now',
     hint: 'The robot at this moment, not in the replay. STOP and Esc stop it.',
