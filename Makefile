@@ -42,7 +42,7 @@ IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-syn
 BESIDE := nice $(SYSTEM_PYTHON) -m tests.beside
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
+.PHONY: help run test services test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks lab-proof hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -140,6 +140,9 @@ notebooks: setup-test host-firmware ## run the notebooks of docs/use/notebooks, 
 
 screenshots: setup-test ## every page at both sizes and in both themes, into build/screenshots
 	$(PYTHON) -m tests.browser.screenshots build/screenshots
+
+lab-proof: setup-test host-firmware ## a whole lab in network namespaces while its parts fail: cut cables, kills, wrong certificates, a full disk (needs root)
+	@$(PYTHON) -W ignore -m tests.proofs.lab
 
 control: setup-test host-firmware ## remake the tables of docs/develop/controllers.md; those of heading, pitch and roll are printed
 	$(PYTHON) -m bench.control

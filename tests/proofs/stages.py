@@ -153,6 +153,14 @@ STAGES: tuple[Stage, ...] = (
                     "Each attack and flood, while an operator arms and presses STOP a hundred times.",
                 ),
                 Proof(
+                    "lab-proof",
+                    "A lab whose parts fail loses nothing, and each robot swims on.",
+                    (
+                        "Three robots, a lab on PostgreSQL, a scheduler and two workers in namespaces: cut "
+                        "cables, kills, wrong certificates, a full disk."
+                    ),
+                ),
+                Proof(
                     "services",
                     "Installation, updates and the way back, with systemd and a cut of the power.",
                     "Containers with systemd, one of 32 bits, one on an emulated ARM processor.",

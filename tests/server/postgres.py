@@ -20,12 +20,11 @@ _numbers = count(1)
 
 
 class PostgresServer:
-    """A running server that listens on a socket in its folder alone."""
+    """A running server in a new folder of `parent`, that listens on a socket there alone."""
 
-    def __init__(self) -> None:
+    def __init__(self, parent: Path | None) -> None:
         programs = sorted(Path("/usr/lib/postgresql").glob("*/bin"))[-1]
-        memory = Path("/dev/shm")
-        self.folder = Path(tempfile.mkdtemp(prefix="mucat-pg-", dir=memory if memory.is_dir() else None))
+        self.folder = Path(tempfile.mkdtemp(prefix="mucat-pg-", dir=parent))
         self._control = [str(programs / "pg_ctl"), "--pgdata", str(self.folder / "data"), "--silent"]
         if USER:
             shutil.chown(self.folder, USER)
@@ -38,7 +37,14 @@ class PostgresServer:
         ]
         self._run(*initdb, "--username=mucat", "--encoding=UTF8", "--locale=C.UTF-8")
         self.start()
-        atexit.register(self.remove)
+
+    @property
+    def runs(self) -> bool:
+        """True until it ends, by itself or not."""
+        asked = subprocess.run(
+            [*self._control, "status"], user=USER, cwd="/", check=False, stdout=subprocess.DEVNULL
+        )
+        return asked.returncode == 0
 
     def start(self) -> None:
         """Start it, and wait until it answers."""
@@ -73,7 +79,9 @@ class PostgresServer:
 @cache
 def postgres() -> PostgresServer:
     """Return the server, started at its first use, with an archive that is copied for each test."""
-    server = PostgresServer()
+    memory = Path("/dev/shm")
+    server = PostgresServer(memory if memory.is_dir() else None)
+    atexit.register(server.remove)
     prepare_archive(server.create(TEMPLATE))
     return server
 

@@ -7,6 +7,7 @@ from robot_runtime.experiments.scenario.boards import BUILD
 from robot_runtime.experiments.sweep.document import Sweep, SweepRun
 from server.features.sweeps.order import reopen
 from server.features.sweeps.run_task import RunTask, identify, plan_task
+from server.platform.openssl import LEAF, SIGNS, Signer, make_certificate
 
 SCENARIO = """
 name = "short"
@@ -51,3 +52,13 @@ def read(text: str = EIGHT) -> Sweep:
 def without_seconds(outcome: Any) -> tuple[Any, ...]:
     """Return an outcome without the time that it took."""
     return outcome.key, outcome.problem, outcome.simulated, outcome.figures, outcome.words
+
+
+def make_certificates(folder: Path) -> Path:
+    """Make a folder as a scheduler, its workers and sweeps have it."""
+    folder.mkdir()
+    signer = Signer(folder / "ca.pem", folder / "ca.key")
+    make_certificate(signer.certificate, signer.key, "lab authority", SIGNS)
+    own = ("subjectAltName=IP:127.0.0.1", "extendedKeyUsage=serverAuth,clientAuth", *LEAF)
+    make_certificate(folder / "certificate.pem", folder / "key.pem", "lab", own, signer)
+    return folder

@@ -16,8 +16,7 @@ from server.features.sweeps.config import find_problem
 from server.features.sweeps.engine import RunResult, SweepEngine
 from server.features.sweeps.run_task import WorkerIdentity, identify
 from server.features.sweeps.simulation import probe, simulate
-from server.platform.openssl import LEAF, SIGNS, Signer, make_certificate
-from tests.server.features.sweeps.sweep_rig import EIGHT, read, tasks_of, without_seconds
+from tests.server.features.sweeps.sweep_rig import EIGHT, make_certificates, read, tasks_of, without_seconds
 
 SCHEDULER = """
 import asyncio, sys
@@ -45,16 +44,6 @@ async def serve():
 
 asyncio.run(serve())
 """
-
-
-def make_certificates(folder: Path) -> Path:
-    """Make a folder as a scheduler, its workers and sweeps have it."""
-    folder.mkdir()
-    signer = Signer(folder / "ca.pem", folder / "ca.key")
-    make_certificate(signer.certificate, signer.key, "lab authority", SIGNS)
-    own = ("subjectAltName=IP:127.0.0.1", "extendedKeyUsage=serverAuth,clientAuth", *LEAF)
-    make_certificate(folder / "certificate.pem", folder / "key.pem", "lab", own, signer)
-    return folder
 
 
 class Cluster:
