@@ -39,7 +39,7 @@ from server.platform.models import PulledSessionRow, SessionRow
 from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder
 from server.platform.store import Store, StoreError
-from server.recording.session import HIDDEN, IMPORTING, REMOVING
+from server.recording.session import HIDDEN
 
 log = logging.getLogger(__name__)
 
@@ -190,9 +190,7 @@ class SessionPull:
                 for identifier, state, deleted in database.exec(
                     columns.where(col(SessionRow.identifier).in_(some))
                 ):
-                    # An import that broke off with the database: another one removes it, and is made again.
-                    if state != IMPORTING:
-                        (here if state != REMOVING and deleted is None else gone).add(identifier)
+                    (here if state not in HIDDEN and deleted is None else gone).add(identifier)
                 those = col(PulledSessionRow.identifier).in_(some)
                 noted.update(database.exec(select(PulledSessionRow.identifier).where(those)))
         return here, (gone | noted) - here, noted

@@ -20,7 +20,6 @@ RADIO = "100kbit"
 """Of the robot whose sessions are pulled while something fails, so that a pull takes some seconds."""
 LATE_BYTES = 40_000
 """That may have been on their way when something failed."""
-DIVE_SECONDS = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +106,8 @@ class WholeLab:
             yield
 
     def swim(self) -> None:
-        """Record a session on each of the others, and arm them: they swim on from here to the end."""
+        """Arm the others: they swim, and record, from here to the end."""
         for robot in self.swimmers:
-            robot.record("before", DIVE_SECONDS)
             robot.arm()
 
     def record(self, seconds: float) -> None:

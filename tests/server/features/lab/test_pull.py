@@ -8,7 +8,6 @@ from pathlib import Path
 from secrets import token_hex
 from tempfile import TemporaryDirectory
 from threading import Event
-from time import time
 from typing import Any
 
 import httpx
@@ -26,13 +25,12 @@ from server.http.sign_in.identity import SHELL
 from server.library.bookmarks import Bookmarks
 from server.library.catalogue import Catalogue
 from server.library.content import Recording
-from server.library.retention import RetentionWorker
 from server.platform.database_copies import sum_file
 from server.platform.disk_space import FileWriteError
 from server.platform.models import Chunk
 from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder, Settings, make_folders
-from server.platform.store import Reader, Store, StoreError
+from server.platform.store import Reader, Store
 from tests.server.blocks import depth_block, film_block
 from tests.server.features.exports.recordings import record_batches
 from tests.server.features.lab.labs import ServedLab, serve_lab
@@ -173,30 +171,6 @@ async def test_a_download_goes_on_where_it_broke_off(
         await see(lab, "done")
         assert sum(received) == export["bytes"]
         assert [*lab.container.settings.data.pulls.iterdir()] == []
-
-
-async def test_an_import_that_broke_off_with_the_database_is_made_again(
-    robot: PulledRobot, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    async def refuse(*_: object, **__: object) -> None:
-        raise StoreError("PostgreSQL does not answer")
-
-    async def lose(*_: object) -> None:
-        # From here on not even the end of the import can be stored.
-        monkeypatch.setattr(Store, "write", refuse)
-        await refuse()
-
-    monkeypatch.setattr(Imports, "_fill_chunks", lose)
-    async with lab_of(robot.settings) as lab:
-        await introduce(lab, robot)
-        await see(lab, "failed")
-        monkeypatch.undo()
-        lab.get(SessionPull).wake()
-        assert (await see(lab, "waiting"))["lacking"] == 1
-        await lab.get(RetentionWorker).apply(time())
-        lab.get(SessionPull).wake()
-        await see(lab, "done")
-        assert [session["name"] for session in (await lab.api.get("/sessions")).json()] == ["first"]
 
 
 async def test_a_damaged_download_is_fetched_again(
