@@ -10,7 +10,7 @@ JSON array of `count` objects. Of a `picture` topic it is the time and one JPEG 
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 from struct import Struct
@@ -127,6 +127,21 @@ def read_blocks(data: bytes, run: str = "") -> list[Block]:
         blocks.append(Block(topic, count, first, data[at:end], run))
         at = end
     return blocks
+
+
+def gather_payloads(data: bytes, gathered: Mapping[int, list[bytes]]) -> None:
+    """Append the payloads of the blocks in `data` to the lists of their topics, by the topics' numbers.
+
+    Blocks of other topics are passed over. Nothing is checked: `data` is this process's own. A minute of a
+    robot has some 20,000 blocks, which `read_blocks` takes five times as long for.
+    """
+    at = 0
+    while at < len(data):
+        topic, _, _, _, size = HEADER.unpack_from(data, at)
+        at += HEADER.size
+        if topic in gathered:
+            gathered[topic].append(data[at : at + size])
+        at += size
 
 
 def read_rows(block: Block) -> list[tuple[float, Record]]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from sqlmodel import col, select
 
-from robot_runtime.contract.topics import PARAMETERS, STATE
+from robot_runtime.contract.topics import CRAFT, PARAMETERS, STATE, STATUS, TRUTH
 from server.analysis.moments import (
     CardChange,
     ControlHistory,
@@ -37,7 +37,8 @@ def read_history(recording: Recording, samples: Samples) -> ControlHistory:
     Raise StoreError, RecordingError.
     """
     origin, end = recording.row.started_steady, recording.row.duration
-    water, crafts = which_water(set(recording.counts())), tuple(read_crafts(recording))
+    there = {topic.name for topic in (CRAFT, STATUS, TRUTH) if recording.has(topic.name)}
+    water, crafts = which_water(there), tuple(read_crafts(recording))
     changes = list(recording.changes(STATE.name)) if STATE.name in recording.topics else []
     if not changes:
         flags = samples.read(recording, ["status.flags"]).get("status.flags")

@@ -1,6 +1,6 @@
 """Figures of a dive: of all its armed time, of each of its segments, or of a part that somebody chose."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from math import inf
 
 import numpy as np
@@ -24,6 +24,7 @@ from server.analysis.story_schemas import StoryFigures
 from server.library.content import Recording
 from server.library.timeline import EVENTS_MAX, read_events
 from server.metrics.figure import Figure
+from server.metrics.series import Series
 
 _OF_A_STEP = ("cycle_amplitude", "overshoot", "settling_time")
 DISARMING = 1.0
@@ -44,8 +45,7 @@ class DiveFigures:
         self._segments = segments
         self._series = samples.read(recording, [MEASURED, SET_POINT])
         self._losses = read_losses(recording)
-        events = read_events(recording, EVENTS_MAX)
-        self._alarms = [event.time for event in events if event.severity == "alarm"]
+        self._alarms = read_alarms(recording)
 
     def measure_all(self) -> StoryFigures:
         """Return the figures of the armed time, and of each segment."""
@@ -74,9 +74,10 @@ class DiveFigures:
             figures |= dict.fromkeys(_OF_A_STEP, Figure(value=None, words=SEVERAL))
         figures |= count_losses(self._losses, spans)
         figures["duration"] = Figure(value=sum(span.end - span.start for span in spans))
-        figures["deepest"] = self._deepest(evaluated)
+        figures["deepest"] = find_deepest(self._series.get(MEASURED), evaluated)
         figures["fin_strokes"] = count_fin_strokes(self._recording, spans)
-        figures["alarms"] = Figure(value=float(sum(self._has_alarm(spans, time) for time in self._alarms)))
+        starts = [segment.start for segment in self._segments]
+        figures["alarms"] = count_alarms(self._alarms, spans, starts)
         return _complete(figures, NOTHING_THERE if held else not_held)
 
     def _held(self, spans: tuple[Span, ...]) -> Iterator[Span]:
@@ -87,21 +88,34 @@ class DiveFigures:
                 if segment.holds_depth and start < end:
                     yield Span(start, end)
 
-    def _has_alarm(self, spans: tuple[Span, ...], time: float) -> bool:
-        """Return True for an alarm in these spans, or one that has just disarmed the robot at their end."""
-        starts = [segment.start for segment in self._segments]
-        return any(
-            span.start <= time < span.end
-            or (span.end <= time < span.end + DISARMING and span.end not in starts)
-            for span in spans
-        )
 
-    def _deepest(self, evaluated: EvaluationRange) -> Figure:
-        depth = self._series.get(MEASURED)
-        inside = np.empty(0) if depth is None else depth.values[evaluated.mask(depth.times)]
-        if not inside.size:
-            return Figure(value=None, words="The recording has no depth in this range.")
-        return Figure(value=float(inside.max()))
+def read_alarms(recording: Recording) -> list[float]:
+    """Return the times of the alarms, s since the session's start. Raise StoreError."""
+    events = read_events(recording, EVENTS_MAX)
+    return [event.time for event in events if event.severity == "alarm"]
+
+
+def count_alarms(alarms: Iterable[float], spans: Sequence[Span], starts: Container[float] = ()) -> Figure:
+    """Return the number of alarms in these spans; one that has just disarmed the robot at their end counts.
+
+    It does not where a segment starts there, which has it.
+    """
+    return Figure(value=float(sum(_has_alarm(spans, starts, time) for time in alarms)))
+
+
+def _has_alarm(spans: Sequence[Span], starts: Container[float], time: float) -> bool:
+    return any(
+        span.start <= time < span.end or (span.end <= time < span.end + DISARMING and span.end not in starts)
+        for span in spans
+    )
+
+
+def find_deepest(depth: Series | None, evaluated: EvaluationRange) -> Figure:
+    """Return the greatest depth in the range."""
+    inside = np.empty(0) if depth is None else depth.values[evaluated.mask(depth.times)]
+    if not inside.size:
+        return Figure(value=None, words="The recording has no depth in this range.")
+    return Figure(value=float(inside.max()))
 
 
 def _complete(figures: Mapping[str, Figure], why: str) -> dict[str, Figure]:

@@ -5,7 +5,6 @@ whatever process of whatever computer. Workers call it; so nothing here belongs 
 """
 
 import gc
-import json
 from functools import cache
 from hashlib import sha256
 from math import isfinite
@@ -24,9 +23,10 @@ from robot_runtime.experiments.scenario.run import ScenarioRun
 from robot_runtime.link.link_driver import PortError
 from robot_runtime.provenance import HASH_CHARACTERS
 from robot_runtime.simulation.boards.emulator_process import BoardError
-from robot_runtime.transport.blocks import read_blocks
 from robot_runtime.transport.lifetime import end_with_parent, give_way, limit_memory
-from server.analysis.run_figures import RunSamples, measure_run, was_armed
+from server.analysis.history import read_history
+from server.analysis.run_figures import RunSamples, measure_run
+from server.analysis.samples import Samples
 from server.features.sweeps.run_task import RunOutcome, RunTask, WorkerIdentity, identify
 from server.platform.errors import ApiError
 
@@ -117,17 +117,12 @@ class _Listener:
 
     def __init__(self) -> None:
         self._samples = RunSamples()
-        self._mission: dict[str, Any] | None = None
         self._ended = 0.0
         self._remarks = ""
 
     def blocks(self, data: bytes) -> None:
         """Take in samples."""
-        blocks = read_blocks(data)
-        self._samples.add(blocks)
-        for block in blocks:
-            if block.topic is MISSION:
-                self._mission = json.loads(block.payload)[-1]
+        self._samples.add(data)
 
     def event(self, event: str, **more: Any) -> None:
         """Take in the run's end."""
@@ -139,17 +134,19 @@ class _Listener:
     ) -> tuple[str, dict[str, float | None], dict[str, str]]:
         """Return the reason for a failure, the figures, and the reasons for missing ones."""
         recording = self._samples.record(self._ended)
-        figures = measure_run(recording, start, end)
+        history = read_history(recording, Samples())
+        figures = measure_run(recording, history, start, end)
         values = {
             name: figure.value if figure.value is not None and isfinite(figure.value) else None
             for name, figure in figures.items()
         }
         reasons = {name: figure.words for name, figure in figures.items() if values[name] is None}
+        missions = [*recording.documents(MISSION.name)]
         problem = ""
-        if not was_armed(recording):
+        if not history.armed:
             problem = self._remarks or "The robot was never armed."
-        elif self._mission is not None and self._mission["phase"] == "failed":
-            problem = f"The mission failed: {self._mission['text']}"
+        elif missions and missions[-1]["phase"] == "failed":
+            problem = f"The mission failed: {missions[-1]['text']}"
         return problem, values, reasons
 
 
