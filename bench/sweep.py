@@ -1,10 +1,14 @@
 """Sweeps: their overhead over the scenarios themselves, and the gain of a second worker; pool and Dask."""
 
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from importlib.resources import files
+from tempfile import TemporaryDirectory
 
 from robot_runtime.experiments import scenario
 from robot_runtime.experiments.scenario.boards import BUILD, boards
@@ -42,11 +46,11 @@ def measure() -> dict[str, float]:
     tasks = _plan(sweep, identity)
     _one_by_one(tasks[:1])
     alone = _one_by_one(tasks)
-    single, double = (_sweep(sweep, identity, LocalWorkers(count)) for count in (1, 2))
+    single, double = (_sweep(sweep, identity, LocalWorkers(count), count) for count in (1, 2))
     with _cluster(1) as workers:
-        dask_one = _sweep(sweep, identity, workers)
+        dask_one = _sweep(sweep, identity, workers, 1)
     with _cluster(2) as workers:
-        dask_two = _sweep(sweep, identity, workers)
+        dask_two = _sweep(sweep, identity, workers, 2)
     return {
         "sweep.overhead_percent": 100 * (single / alone - 1),
         "sweep.speed_up_two_x": single / double,
@@ -76,9 +80,9 @@ def _one_by_one(tasks: list[RunTask]) -> float:
     return time.monotonic() - began
 
 
-def _sweep(sweep: Sweep, identity: WorkerIdentity, workers: Workers) -> float:
-    """Return the s that the sweep takes with workers that are there already."""
-    ready = _ReadyWorkers(workers)
+def _sweep(sweep: Sweep, identity: WorkerIdentity, workers: Workers, count: int) -> float:
+    """Return the s that the sweep takes with so many workers that are there already."""
+    ready = _ReadyWorkers(workers, count)
     began = time.monotonic()
     done = [*SweepEngine(sweep, "", identity, lambda _: {}, ready).perform()]
     seconds = time.monotonic() - began
@@ -90,14 +94,16 @@ def _sweep(sweep: Sweep, identity: WorkerIdentity, workers: Workers) -> float:
 class _ReadyWorkers:
     """Workers whose processes have loaded everything."""
 
-    def __init__(self, workers: Workers) -> None:
+    def __init__(self, workers: Workers, count: int) -> None:
         self._workers = workers
         self.alone = workers.alone
         self._executor = workers.open()
-        while not workers.count:
+        while workers.count < count:
             time.sleep(0.1)
-        warmed = [self._executor.submit(probe) for _ in range(4 * workers.count)]
-        for future in warmed:
+        there: set[int] = set()
+        while len(there) < count:
+            there |= {future.result() for future in [self._executor.submit(os.getpid) for _ in range(count)]}
+        for future in [self._executor.submit(probe) for _ in range(count)]:
             future.result()
 
     @property
@@ -115,16 +121,20 @@ class _ReadyWorkers:
 
 @contextmanager
 def _cluster(count: int) -> Iterator[Workers]:
-    """Yield a cluster of this computer, with processes as `mucat worker` starts them."""
+    """Yield a scheduler in this process, with workers as people start them."""
     from distributed import LocalCluster
 
-    from server.features.sweeps.cluster import ClusterWorkers, name_identity
+    from server.features.sweeps.cluster import ClusterWorkers
 
-    with LocalCluster(
-        n_workers=count,
-        threads_per_worker=1,
-        dashboard_address=None,
-        memory_limit=0,
-        resources={name_identity(probe()): 1},
-    ) as cluster:
-        yield ClusterWorkers(cluster.scheduler_address, "", identify(BUILD), lambda _: None)
+    with (
+        TemporaryDirectory(prefix="mucat-") as folder,
+        LocalCluster(n_workers=0, dashboard_address=None) as cluster,
+        ExitStack() as ended,
+    ):
+        address: str = cluster.scheduler_address
+        for _ in range(count):
+            command = [sys.executable, "-m", "server.cli", "worker", "--scheduler", address, "--data", folder]
+            worker = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+            ended.callback(worker.wait)
+            ended.callback(worker.kill)
+        yield ClusterWorkers(address, "", identify(BUILD), lambda _: None)

@@ -14,7 +14,7 @@ from server.cli import main
 from server.features.sweeps.runner import SweepRunner
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.server.features.doors.rig import make_token
-from tests.server.serving import serve
+from tests.server.serving import Served, serve
 
 _TEXT = """
 format = 1
@@ -53,6 +53,7 @@ def _by_shell(folder: Path) -> str:
 
 async def _by_http(folder: Path) -> str:
     async with serve(_settings(folder, "http")) as served:
+        await _require_none_stored(served)
         sweep = (await served.api.post("/sweeps", json={"text": _TEXT})).json()["sweep"]
         await served.get(SweepRunner).wait()
         return (await served.api.get(f"/sweeps/{sweep}/table")).text
@@ -60,9 +61,15 @@ async def _by_http(folder: Path) -> str:
 
 async def _by_python(folder: Path) -> str:
     async with serve(_settings(folder, "python")) as served:
+        await _require_none_stored(served)
         lab = Lab(f"http://127.0.0.1:{served.settings.server.port}", await make_token(served, name="bench"))
         frame: pandas.DataFrame = await asyncio.to_thread(lab.sweep, _TEXT)
     return str(frame.to_csv(index=False))
+
+
+async def _require_none_stored(served: Served) -> None:
+    """Each place computes all runs by itself."""
+    assert (await served.api.post("/sweeps/check", json={"text": _TEXT})).json()["stored"] == 0
 
 
 def _settings(folder: Path, name: str) -> Settings:

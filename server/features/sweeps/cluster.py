@@ -12,6 +12,7 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 
+import dask
 from distributed import Client, Security, Worker
 
 from robot_runtime.errors import RefusedError
@@ -26,6 +27,12 @@ CONNECT_SECONDS = 10.0
 AGAIN_SECONDS = 1.0
 LOOK_SECONDS = 1.0
 MARK = "mucat"
+SELDOM = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "5s",
+}
+"""How often a worker watches itself: by default some 150 times a second, each of which interrupts the run."""
 
 
 def read_certificates(scheduler: str, folder: str) -> Security | None:
@@ -137,6 +144,7 @@ async def serve_worker(scheduler: str, certificates: str, tell: Callable[[str], 
     Raise RefusedError, BoardError.
     """
     security = read_certificates(scheduler, certificates)
+    dask.config.set(SELDOM)
     settle_worker()
     resource = name_identity(probe())
     while True:
