@@ -17,6 +17,8 @@ COUNT_MAX = 1000
 """Values of one parameter."""
 STEPS = Range(2, COUNT_MAX)
 SAMPLES = Range(1, COUNT_MAX)
+INDEX_DIGITS = 6
+"""Of an entry's number in a list; Python refuses to read thousands."""
 DIGITS = 12
 """Significant digits of a value of a range, so that it is what a person would write."""
 _WORDS = (
@@ -42,7 +44,10 @@ class SweptParameter:
     @property
     def path(self) -> Path:
         """The path of the entry in the scenario's table."""
-        return tuple(int(part) if part.isdecimal() else part for part in self.name.split("."))
+        return tuple(
+            int(part) if part.isdecimal() and len(part) <= INDEX_DIGITS else part
+            for part in self.name.split(".")
+        )
 
     @property
     def count(self) -> int:

@@ -118,6 +118,8 @@ def test_a_thousand_million_runs_are_refused_at_once() -> None:
         ('[vary]\n"events.9.north" = [1]\n', ("vary", "events.9.north", 0), "entries 0 to 1"),
         ('[vary]\n"duration.x" = [1]\n', ("vary", "duration.x", 0), "a value where a table would be"),
         ('[vary]\n"control.gains.pid.kp" = [1, 1]\n', ("vary", "control.gains.pid.kp"), "twice"),
+        (f'[vary]\n"events.{"9" * 5000}.north" = [1]\n', ("vary", f"events.{'9' * 5000}.north", 0), "0 to 1"),
+        ('[vary]\n"control.gains.pid.kp" = []\n', ("vary", "control.gains.pid.kp"), "has 0 values"),
         ('[vary]\n"control.gains.pid.kp" = [nan]\n', ("vary", "control.gains.pid.kp", 0), "must be a number"),
         (
             '[vary]\n"control.gains.pid.kp" = { from = 1, to = 2 }\n',
@@ -126,6 +128,7 @@ def test_a_thousand_million_runs_are_refused_at_once() -> None:
         ),
         ('[vary]\n"a" = { uniform = [2, 1] }\n', ("vary", "a"), "the first must be the smaller"),
         ("[figures]\nbest = 'deepest'\n", ("figures", "best"), "there are rmse, overshoot"),
+        ("[figures]\nbest = 'speed'\n", ("figures", "best"), "there are rmse, overshoot"),
         ("[figures]\nlimits = { speed = 1 }\n", ("figures", "limits", "speed"), "is no figure"),
         ("[figures]\nfrom = 5\nto = 4\n", ("figures", "to"), "after `from`"),
         ("[search]\n", ("search",), "needs an entry"),
@@ -148,6 +151,10 @@ def test_what_cannot_be_run_is_named(text: str, path: tuple[str | int, ...], rea
         (HEAD.replace('"short"', '"long"'), "the library has short"),
         ("format = 1\n", "name is missing"),
         ("format =", "is not TOML"),
+        (HEAD + "seeds = = 2\n", "is not TOML.*line 4"),
+        (HEAD + "seeds = [1, 2\n", "is not TOML"),
+        (HEAD + "seeds = 1,5\n", r"1,5 in line 4; write 1\.5"),
+        (HEAD + "#" * 1_000_000, "is larger than 60000 bytes"),
     ],
 )
 def test_a_wrong_head_is_named(head: str, reason: str) -> None:
