@@ -55,17 +55,23 @@ class ActiveSweep:
     progress: SweepProgress
     workers: int = 0
     notice: str = ""
-    began: float | None = None
-    """Of the first run that was computed (loop's time, s)."""
     computed: int = 0
+    seconds: float = 0.0
+    """That the computed runs took, one by one."""
+    last: float = 0.0
+    """Of the last run that was computed (loop's time, s)."""
     runs: list[StoredRun] = field(default_factory=list)
     """Done, and not stored yet."""
 
     def remaining(self, now: float) -> float | None:
-        """Return the s until the end, by the rate of the runs computed so far; None before the first."""
-        if self.began is None or not self.computed or now <= self.began:
+        """Return the s until the end, by the time of a run; None before the first and without workers.
+
+        Not by the time since the start: the first runs end together, and much later than the workers began.
+        """
+        if not self.computed or not self.workers:
             return None
-        return (self.sweep.runs - self.progress.done) * (now - self.began) / self.computed
+        each = self.seconds / self.computed / self.workers
+        return (self.sweep.runs - self.progress.done) * each - min(now - self.last, each)
 
 
 class SweepRunner:
@@ -143,12 +149,14 @@ class SweepRunner:
         self._require_room()
         await self._store.change(number, state="waiting", problem="", ended=None, done=0, failed=0, best="")
         self._enqueue(number)
+        await self.announce()
 
     async def cancel(self, number: int) -> None:
         """End a sweep; what is done stays. Raise RefusedError, StoreError."""
         if number in self._queue:
             self._queue.remove(number)
             await self._store.change(number, state="cancelled", ended=time())
+            self._ended = number
             await self.announce()
         elif number in self._all() and self._performing is not None:
             self._performing.cancel()
@@ -300,9 +308,9 @@ class SweepRunner:
                     active.runs.append(run)
                     active.notice = ""
                     if not document["stored"]:
+                        active.last = loop.time()
                         active.computed += 1
-                        # From the first result on, so that the start of the workers does not count.
-                        active.began = active.began or loop.time()
+                        active.seconds += run.outcome.seconds
                 elif "problem" in document:
                     return str(document["problem"])
                 elif "end" in document:

@@ -3,6 +3,7 @@
 import asyncio
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 import tomli_w
@@ -25,6 +26,11 @@ async def ended(served: Served, sweep: int) -> dict[str, object]:
         await served.get(SweepRunner).wait()
     listed = (await served.api.get("/sweeps")).json()
     return next(entry for entry in listed if entry["id"] == sweep)
+
+
+def states_of(message: dict[str, Any]) -> list[tuple[int, str]]:
+    """Return the sweeps that pages are sent about, each with its state."""
+    return [(entry["id"], entry["state"]) for entry in message["sweeps"]]
 
 
 @pytest.fixture
@@ -118,7 +124,10 @@ async def test_sweeps_queue_and_are_cancelled_and_resumed(settings: Settings) ->
         listed = (await served.api.get("/sweeps")).json()
         assert (listed[0]["id"], listed[0]["state"]) == (second, "waiting")
         assert (await served.api.delete(f"/sweeps/{first}")).status_code == 409
+        sent: list[dict[str, Any]] = []
+        served.get(SweepRunner)._notify = sent.append
         assert (await served.api.post(f"/sweeps/{second}/cancel")).status_code == 204
+        assert (second, "cancelled") in states_of(sent[-1])
         store = served.get(SweepStore)
         async with asyncio.timeout(SECONDS):
             while not await asyncio.to_thread(store.runs, first):
@@ -129,7 +138,10 @@ async def test_sweeps_queue_and_are_cancelled_and_resumed(settings: Settings) ->
         done = summary["done"]
         assert len(await asyncio.to_thread(store.runs, first)) == done
         assert (await served.api.post(f"/sweeps/{first}/cancel")).status_code == 409
+        many_again = (await served.api.post("/sweeps", json={"text": many})).json()["sweep"]
         assert (await served.api.post(f"/sweeps/{second}/resume")).status_code == 204
+        assert (second, "waiting") in states_of(sent[-1])
+        assert (await served.api.post(f"/sweeps/{many_again}/cancel")).status_code == 204
         assert (await ended(served, second))["state"] == "complete"
         assert (await served.api.post(f"/sweeps/{second}/resume")).status_code == 409
         assert (await served.api.delete(f"/sweeps/{first}")).status_code == 204
