@@ -7,7 +7,7 @@ export const PAGES = ['operate', 'tune', 'missions', 'scenarios', 'comm-tests', 
 /** The pages of a lab that have a tab. */
 const LAB_PAGES = ['robots', 'scenarios', 'sessions', 'figures', 'system'] as const;
 /** The pages of a lab without a tab. */
-const LAB_INNER: readonly PageName[] = ['replay', 'people'];
+const LAB_INNER: readonly PageName[] = ['replay', 'exhibit', 'people'];
 type Tab = (typeof PAGES | typeof LAB_PAGES)[number];
 const ALL = [...PAGES, 'flight', 'exhibit', 'gamepads', 'replay', 'people', 'bring-up'] as const;
 

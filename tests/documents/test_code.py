@@ -50,6 +50,9 @@ UNRUN = {
     ("run/lab.md", "mucat lab lake lake --topics control depth --data /srv/mucat-lab"): (
         "an archive; tests/server/features/exports/test_lake.py makes one"
     ),
+    ("run/lab.md", "mucat backup lab.db --data /srv/mucat-lab"): (
+        "two labs; tests/server/features/backup/test_archive_backup.py has them"
+    ),
     ("run/lab.md", "pip install mucat[lab]"): "the internet; tests/server/postgres.py has a server",
     ("run/packages.md", "python3 -m venv mucat"): "tests/packages does the same with the wheels",
     ("run/packages.md", "sudo apt install python3-venv python3-picamera2 avrdude"): "a Raspberry Pi",

@@ -85,6 +85,7 @@ def page(browser: Browser, lab: ArchiveSite) -> Iterator[Page]:
     with browser.new_context(viewport=DESKTOP) as context:
         page = context.new_page()
         follow(page, make_link(lab, "operator"))
+        expect(page.get_by_role("heading", name="Robots")).to_be_visible()
         yield page
 
 
@@ -94,6 +95,8 @@ def test_a_session_is_whole_on_a_lab_s_page(page: Page, lab: ArchiveSite) -> Non
     wait_for(lambda: film.evaluate("(video) => video.readyState >= 2"), "the film")
     expect(page.get_by_text("It turned here.").first).to_be_visible()
     expect(page.get_by_role("alert").filter(has_text=re.compile(r"\S"))).to_have_count(0)
+    page.get_by_role("link", name="Exhibit").click()
+    expect(page.get_by_role("heading", name="Exhibit")).to_be_attached()
     page.goto(f"{lab.url}/#/replay/1?at=6")
     expect(page.get_by_role("slider").first).to_be_visible()
     page.goto(f"{lab.url}/#/sessions/compare/1,2")

@@ -5,7 +5,7 @@ export const system = {
   title: pages.system,
   backup: {
     title: 'Backup',
-    about: 'A copy of all data: sessions, tests, settings and accounts. To restore it, run this on the robot’s computer:',
+    about: 'A copy of all data: sessions, tests, settings and accounts. To restore it, run this on the server’s computer:',
     download: 'Download a backup',
     copying: 'Copying the database. Recording continues.',
     downloaded: (file: string) => `Downloaded: ${file}`,

@@ -3,6 +3,7 @@
 import asyncio
 import logging
 import time
+from contextlib import suppress
 
 from server.features.doctor.checks import examine
 from server.features.doctor.findings import Finding
@@ -12,6 +13,10 @@ from server.platform.notices import Notices
 from server.platform.settings import Settings
 
 log = logging.getLogger(__name__)
+
+START_SECONDS = 30.0
+"""For which a lab's parts may be starting before it is examined."""
+LOOK_SECONDS = 0.5
 
 
 class Examination:
@@ -26,6 +31,12 @@ class Examination:
 
     async def at_start(self) -> None:
         """Perform the quick checks, and report problems."""
+        if self._settings.lab:
+            # Its router has only just been started.
+            with suppress(TimeoutError):
+                async with asyncio.timeout(START_SECONDS):
+                    while self._monitor.health().status == "starting":
+                        await asyncio.sleep(LOOK_SECONDS)
         for finding in await self._examine(thorough=False):
             # The link has only just been opened: its own alarm comes when it fails.
             if finding.verdict == "wrong" and finding.name != "board":
