@@ -29,6 +29,7 @@ from server.platform.errors import UnavailableError
 from server.platform.lab_network import ROBOTS
 from server.platform.notices import Notices
 from server.platform.paired_robots import (
+    ROBOTS_MAX,
     PairedRobot,
     PairedRobots,
     UnpairedRobotError,
@@ -41,7 +42,7 @@ PRESENT_SECONDS = 3.5
 """A robot says how it is once a second."""
 DEPTHS = 60
 STOP_SECONDS = 2.0
-STOPS_AT_ONCE = 128
+STOPS_AT_ONCE = 2 * ROBOTS_MAX
 """Two ways for each robot, none of which waits for another."""
 SIGN_OUT_SECONDS = 5.0
 CLOCK_SECONDS = 60.0
