@@ -473,7 +473,7 @@ def test_a_viewer_sees_and_checks_and_changes_nothing(browser: Browser, site: Si
 
 
 def test_an_open_card_fits_the_screen_and_is_accessible(any_page: Page, site: Site) -> None:
-    any_page.context.add_init_script(path=AXE)
+    any_page.add_init_script(path=AXE)
     any_page.reload()
     keep(site, "accessible")
     open_mission(any_page, site, "accessible")
@@ -484,6 +484,9 @@ def test_an_open_card_fits_the_screen_and_is_accessible(any_page: Page, site: Si
     any_page.get_by_role("button", name="Add a step to the mission").click()
     for view in ("Dry run", "TOML", "Versions"):
         any_page.get_by_role("button", name=view, exact=True).click()
+        if view == "TOML":
+            # Its editor is fetched.
+            expect(any_page.get_by_role("textbox", name="Mission as TOML")).to_be_visible()
         assert faults(any_page) == [], view
     width = any_page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     inner = any_page.evaluate(

@@ -82,7 +82,8 @@ export function openEditor(element: HTMLElement, language: Language, label: stri
         language === 'toml' ? StreamLanguage.define(toml) : json(),
         syntaxHighlighting(colours),
         look,
-        EditorView.contentAttributes.of({ 'aria-label': label, spellcheck: 'false', autocapitalize: 'off', autocorrect: 'off' }),
+        // What can be edited has the focus without a tabindex; axe-core looks for one.
+        EditorView.contentAttributes.of({ 'aria-label': label, tabindex: '0', spellcheck: 'false', autocapitalize: 'off', autocorrect: 'off' }),
         locking.of(EditorState.readOnly.of(false)),
         EditorView.updateListener.of((update) => {
           if (update.docChanged && !update.transactions.some((one) => one.annotation(FROM_OUTSIDE))) change(update.state.doc.toString());
