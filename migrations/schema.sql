@@ -117,7 +117,7 @@ CREATE TABLE "profile" (
 CREATE TABLE pulled_session (
 	identifier VARCHAR NOT NULL, 
 	robot VARCHAR NOT NULL, 
-	pulled FLOAT NOT NULL, 
+	pulled FLOAT NOT NULL, edits INTEGER DEFAULT '0' NOT NULL, texts VARCHAR DEFAULT '{}' NOT NULL, 
 	PRIMARY KEY (identifier)
 );
 CREATE TABLE run_figures (
@@ -158,7 +158,7 @@ CREATE TABLE "session" (
 	seed INTEGER, 
 	kept BOOLEAN DEFAULT '0' NOT NULL, 
 	deleted FLOAT
-, archived FLOAT);
+, archived FLOAT, edits INTEGER DEFAULT '0' NOT NULL);
 CREATE TABLE session_figures (
 	session_id INTEGER NOT NULL, 
 	segment INTEGER NOT NULL, 
@@ -245,4 +245,4 @@ CREATE INDEX ix_marker_session_id ON marker (session_id);
 CREATE INDEX ix_session_state ON session (state);
 CREATE INDEX ix_sweep_run_key ON sweep_run ("key");
 CREATE UNIQUE INDEX session_identifier ON session (identifier);
-INSERT INTO alembic_version VALUES ('0017');
+INSERT INTO alembic_version VALUES ('0018');

@@ -16,7 +16,8 @@ from server.platform.certificate import fingerprint_of
 
 PIN_LENGTH = 16
 """79 bits of a fingerprint: nobody makes another certificate with the same ones."""
-ANSWER_BYTES_MAX = 1_000_000
+ANSWER_BYTES_MAX = 8_000_000
+"""Of a document: a session may have a million characters of notes."""
 CONNECT_SECONDS_MAX = 5.0
 REFUSED = 400
 """This status, and those after it."""

@@ -13,7 +13,7 @@ from server.platform.errors import NotFoundError
 from server.platform.models import BookmarkRow, SessionRow
 from server.platform.store import Store, insert_row
 from server.recording.recorder import Recorder
-from server.recording.session import SessionStateError, require
+from server.recording.session import EDITED, SessionStateError, require
 
 NAME_MAX = 500
 """Characters of a bookmark's name."""
@@ -47,6 +47,7 @@ class Bookmarks:
             made = time()
             values = {"session_id": session, "time": steady, "text": text, "made": made}
             number = insert_row(connection, BookmarkRow, values)
+            _count_edit(connection, session)
             return _describe(number, steady - start, text, made)
 
         return await self._store.write(write)
@@ -67,6 +68,7 @@ class Bookmarks:
             _require_room(connection, session, text)
             values = {"session_id": session, "time": steady, "text": text, "made": time()}
             insert_row(connection, BookmarkRow, values)
+            _count_edit(connection, session)
             return True
 
         return await self._store.write(write)
@@ -94,6 +96,7 @@ class Bookmarks:
             connection.execute(
                 update(BookmarkRow).where(col(BookmarkRow.id) == mark).values(time=row.time, text=row.text)
             )
+            _count_edit(connection, session)
             return _describe(mark, row.time - start, row.text, row.made)
 
         return await self._store.write(write)
@@ -105,6 +108,7 @@ class Bookmarks:
             require(connection, session)
             _find_mark(connection, session, mark)
             connection.execute(delete(BookmarkRow).where(col(BookmarkRow.id) == mark))
+            _count_edit(connection, session)
 
         await self._store.write(write, frees=True)
 
@@ -142,6 +146,10 @@ def _find_mark(connection: Connection, session: int, mark: int) -> BookmarkRow:
     if span is None:
         raise UnknownBookmarkError(f"Session {session} has no bookmark {mark}.")
     return BookmarkRow(id=mark, session_id=session, time=span.time, text=span.text, made=span.made)
+
+
+def _count_edit(connection: Connection, session: int) -> None:
+    connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(EDITED))
 
 
 def _require_room(connection: Connection, session: int, text: str) -> None:

@@ -13,7 +13,7 @@ from server.platform.models import SessionRow, SessionTag
 from server.platform.store import Store
 from server.recording.recorder import Recorder
 from server.recording.schemas import Session
-from server.recording.session import HIDDEN, REMOVING, SessionStateError, require
+from server.recording.session import EDITED, HIDDEN, REMOVING, SessionStateError, require
 
 TEXTS = {"name": "The name, now “{}”,", "note": "The note of “{}”", "tags": "A tag of “{}”"}
 """The texts of a session in words, with its name."""
@@ -48,8 +48,9 @@ class Catalogue(Listing):
             require(connection, session)
             new_texts = {"name": name, "note": note, "tags": None if tags is None else sorted(set(tags))}
             _check_base(connection, session, new_texts, base)
-            if values:
-                connection.execute(update(SessionRow).where(col(SessionRow.id) == session).values(values))
+            connection.execute(
+                update(SessionRow).where(col(SessionRow.id) == session).values({**values, **EDITED})
+            )
             if tags is not None:
                 connection.execute(delete(SessionTag).where(col(SessionTag.session_id) == session))
                 rows = [{"session_id": session, "tag": tag} for tag in dict.fromkeys(tags)]

@@ -20,7 +20,7 @@ from server.platform.models import BookmarkRow, SessionRow
 from server.platform.notices import Notices
 from server.platform.store import Store, StoreError
 from server.platform.wall_clock import JUMP_SECONDS, is_set, is_synchronised, was_suspended
-from server.recording.session import REAL_ORIGINS
+from server.recording.session import EDITED, REAL_ORIGINS
 
 log = logging.getLogger(__name__)
 
@@ -107,6 +107,7 @@ def _correct(connection: Connection, rows: list[SessionRow], ahead: float, now: 
                 ended=None if row.ended is None else min(row.ended + late, now),
                 deleted=None if row.deleted is None else min(row.deleted + late, now),
                 name=row.name.replace(written, shown),
+                **EDITED,
             )
         )
         connection.execute(

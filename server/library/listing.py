@@ -18,10 +18,12 @@ from server.library.bookmarks import select_bookmarks
 from server.library.content import Recording, reading_content
 from server.library.crafts import read_crafts, which_water
 from server.library.schemas import (
+    ARCHIVED_MAX,
     SHOWN_MAX,
     RecordedColumn,
     RecordedTopic,
     SessionDetail,
+    SessionEdits,
     SessionGap,
     SessionGroup,
 )
@@ -46,6 +48,7 @@ GROUPS_MAX = 5000
 _READ = [getattr(SessionRow, name) for name in COLUMNS]
 _HAS_FILM = exists().where(col(Chunk.session_id) == col(SessionRow.id), col(Chunk.topic) == FILM.name)
 _LISTED: list[Any] = [*_READ, SummaryRow.document, _HAS_FILM]
+_EDITS: list[Any] = [getattr(SessionRow, name) for name in ("id", "identifier", "name", "archived", "edits")]
 _SCENARIO: Any = col(SessionRow.scenario_name)
 _MISSION: ColumnElement[str] = func.coalesce(func.json_extract(SummaryRow.document, "$.mission"), "")
 
@@ -163,6 +166,22 @@ class Listing:
             yield page.sessions
             if (before := page.following) is None:
                 return
+
+    def edits(self, before: int | None) -> list[SessionEdits]:
+        """Return the ended sessions outside the bin, newest first, with `before` only those of lower numbers;
+        at most `ARCHIVED_MAX`.
+        """
+        row = SessionRow
+        rest = [] if before is None else [col(row.id) < before]
+        query = select(*_EDITS).where(*conditions(EVERY_SESSION), col(row.state) != "recording", *rest)
+        with self._reader.read() as database:
+            rows = database.connection().execute(query.order_by(col(row.id).desc()).limit(ARCHIVED_MAX))
+            return [
+                SessionEdits(
+                    id=id_, identifier=identifier, name=name, archived=archived is not None, edits=edits
+                )
+                for id_, identifier, name, archived, edits in rows
+            ]
 
     def groups(self, selection: SessionSelection, by: Grouping, zone: tzinfo = UTC) -> list[SessionGroup]:
         """Return the groups of the selected sessions, in the order in which `page` has them.

@@ -19,7 +19,7 @@ NOTES_MAX = 1_000_000
 """Characters of all notes at the bookmarks of a session: an answer has all of them."""
 
 ARCHIVED_MAX = 1000
-"""Sessions that a lab reports at once."""
+"""Sessions that a lab looks at, or reports, at once."""
 
 Name = Annotated[str, StringConstraints(strip_whitespace=True, max_length=100)]
 Note = Annotated[str, StringConstraints(strip_whitespace=True, max_length=NOTE_MAX)]
@@ -72,6 +72,16 @@ class SessionGroup(Schema):
 
     name: str = Field(description="a day such as 2026-05-31, a scenario or a mission; empty: without one")
     count: int
+
+
+class SessionEdits(Schema):
+    """A session that has ended, as a lab compares it with its archive."""
+
+    id: int
+    identifier: str
+    name: str
+    archived: bool = Field(description="true once a lab has said that it has it")
+    edits: int = Field(description="number of the changes of its texts, dates and bookmarks")
 
 
 class ArchivedSessions(RequestBody):

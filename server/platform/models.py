@@ -20,7 +20,8 @@ class SessionRow(SQLModel, table=True):
     steady clock counts from. Origins: "operator", "arming", "scenario" (in real time), "simulated" (a
     scenario in simulated time), "import". `scenario` is its text as TOML; `firmware` and `software` are
     hashes. `kept` protects it from the retention rule; `deleted` is when somebody deleted it, until it is
-    really removed. `archived` is when a lab said that it has the session.
+    really removed. `archived` is when a lab said that it has the session. `edits` counts the changes of its
+    texts, dates and bookmarks.
     """
 
     __tablename__ = "session"
@@ -53,6 +54,7 @@ class SessionRow(SQLModel, table=True):
     kept: bool = False
     deleted: float | None = None
     archived: float | None = None
+    edits: int = 0
 
 
 class SessionTag(SQLModel, table=True):
@@ -369,7 +371,8 @@ class RunFiguresRow(SQLModel, table=True):
 class PulledSessionRow(SQLModel, table=True):
     """A session that a lab has pulled: once purged there, it is not pulled again.
 
-    `robot` is the name by which the robot had joined. Time is UTC (s since 1970).
+    `robot` is the name by which the robot had joined, `edits` the session's there, as of the last look.
+    `texts` are those that came from there last (features/lab/edits.py), as JSON. Time is UTC (s since 1970).
     """
 
     __tablename__ = "pulled_session"
@@ -377,6 +380,8 @@ class PulledSessionRow(SQLModel, table=True):
     identifier: str = Field(primary_key=True)
     robot: str
     pulled: float
+    edits: int
+    texts: str
 
 
 class SessionFiguresRow(SQLModel, table=True):

@@ -27,6 +27,8 @@ HIDDEN = (REMOVING, IMPORTING)
 """States of rows that count as sessions only for retention and import."""
 COLUMNS = tuple(name for name in Session.model_fields if name in SessionRow.model_fields)
 """Columns of a row that `from_columns` needs; not its long texts."""
+EDITED: Mapping[str, Any] = {"edits": col(SessionRow.edits) + 1}
+"""Values of an update that changes texts, dates or bookmarks of sessions."""
 REAL_ORIGINS = ("operator", "arming", "scenario")
 """Origins of sessions in real time, whose steady times are those of this computer; the server itself computes
 those in simulated time."""

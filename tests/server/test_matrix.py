@@ -137,6 +137,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("GET", "/api/sessions"): "viewer",
     ("GET", "/api/sessions/controllers"): "viewer",
     ("GET", "/api/sessions/groups"): "viewer",
+    ("GET", "/api/sessions/edits"): "viewer",
     ("GET", "/api/sessions/robots"): "viewer",
     ("POST", "/api/sessions/archived"): "archive",
     ("GET", "/api/figures"): "viewer",

@@ -341,6 +341,9 @@ export interface paths {
     "/api/sessions/controllers": {
         get: operations["listSessionControllers"];
     };
+    "/api/sessions/edits": {
+        get: operations["listSessionEdits"];
+    };
     "/api/sessions/groups": {
         get: operations["listSessionGroups"];
     };
@@ -2844,6 +2847,16 @@ export interface components {
              */
             water: "simulated" | "real" | "unknown";
         };
+        /** @description A session that has ended, as a lab compares it with its archive. */
+        SessionEdits: {
+            /** @description true once a lab has said that it has it */
+            archived: boolean;
+            /** @description number of the changes of its texts, dates and bookmarks */
+            edits: number;
+            id: number;
+            identifier: string;
+            name: string;
+        };
         /** @description Samples that are missing in the session: `missed` of them, noticed at `time`. */
         SessionGap: {
             /** @enum {string} */
@@ -3841,6 +3854,7 @@ export type Session = components['schemas']['Session'];
 export type SessionBase = components['schemas']['SessionBase'];
 export type SessionChanges = components['schemas']['SessionChanges'];
 export type SessionDetail = components['schemas']['SessionDetail'];
+export type SessionEdits = components['schemas']['SessionEdits'];
 export type SessionGap = components['schemas']['SessionGap'];
 export type SessionGroup = components['schemas']['SessionGroup'];
 export type SessionLines = components['schemas']['SessionLines'];
@@ -5723,6 +5737,21 @@ export interface operations {
             200: {
                 content: {
                     "application/json": string[];
+                };
+            };
+        };
+    };
+    listSessionEdits: {
+        parameters: {
+            query?: {
+                before?: number | null;
+            };
+        };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["SessionEdits"][];
                 };
             };
         };

@@ -14,7 +14,7 @@ from server.platform.models import SessionRow, SummaryRow
 from server.platform.store import Store, StoreError
 from server.recording.recorder import Recorder
 from server.recording.schemas import SessionSummary
-from server.recording.session import REAL_ORIGINS, has_default_name
+from server.recording.session import EDITED, REAL_ORIGINS, has_default_name
 from server.stream.hub import Hub
 
 log = logging.getLogger(__name__)
@@ -96,4 +96,4 @@ def _store(connection: Connection, session: int, summary: SessionSummary) -> Non
         and row.origin in REAL_ORIGINS
         and has_default_name(row.name, datetime.fromtimestamp(row.started, UTC))
     ):
-        connection.execute(update(SessionRow).where(there).values(name=name))
+        connection.execute(update(SessionRow).where(there).values(name=name, **EDITED))

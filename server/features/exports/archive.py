@@ -36,7 +36,7 @@ def write_archive(store: Reader, source: ExportSelection, output: BinaryIO) -> N
 
 def _describe(store: Reader, source: ExportSelection) -> dict[str, Any]:
     row = source.row
-    session = row.model_dump(exclude={"id", "deleted", "kept", "archived"})
+    session = row.model_dump(exclude={"id", "deleted", "kept", "archived", "edits"})
     session |= {"robot_state": json.loads(row.robot_state), "topics": json.loads(row.topics)}
     with store.read() as database:
 

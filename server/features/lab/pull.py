@@ -17,21 +17,21 @@ from functools import partial
 from shutil import rmtree
 from time import time
 
-from sqlalchemy import Connection, func, insert
+from sqlalchemy import func
 from sqlmodel import col, select
 
 from robot_runtime.durable_files import PART, make_folder
 from robot_runtime.errors import RefusedError
+from server.features.lab.edits import UNKNOWN, follow, note_here, note_pulled
 from server.features.lab.robot_client import (
     PullStoppedError,
     RobotAnswerError,
     RobotClient,
     RobotsExport,
-    RobotsSession,
 )
 from server.features.lab.schemas import Phase, RobotPull
 from server.library.intake import ArchiveIntake
-from server.library.schemas import ARCHIVED_MAX
+from server.library.schemas import ARCHIVED_MAX, SessionEdits
 from server.platform.database_copies import sum_file
 from server.platform.disk_space import FileWriteError, require_free
 from server.platform.errors import InvalidError
@@ -148,23 +148,28 @@ class SessionPull:
         )
         for session in sessions:
             # The lab may have been killed in between; and what was imported counts as pulled.
-            if session.identifier in stored - noted:
-                await self._store.write(partial(_note, session=session, robot=robot.name))
+            if session.identifier in stored - noted.keys():
+                await self._store.write(partial(note_here, session=session, robot=robot.name))
+                noted[session.identifier] = robot.name, UNKNOWN
         lacking = [entry for entry in sessions if entry.identifier not in stored | pulled]
+        for session in sessions:
+            source, edits = noted.get(session.identifier, ("", session.edits))
+            if session.identifier not in stored or source != robot.name or edits == session.edits:
+                continue
+            if await self._waits(client, progress, len(lacking)):
+                return
+            texts = await asyncio.to_thread(client.texts, session)
+            await self._store.write(partial(follow, session=session, theirs=texts))
         for number, session in enumerate(lacking):
             if session.identifier in progress.problems:
                 continue
-            # It may be armed at any time, and what a robot does under water goes first.
-            if await asyncio.to_thread(client.is_armed):
-                progress.phase, progress.text = "armed", "It is armed. Its sessions are pulled afterwards."
-                progress.lacking = len(lacking) - number
+            if await self._waits(client, progress, len(lacking) - number):
                 return
-            progress.lacking = len(lacking) - number
             progress.phase, progress.text = "pulling", f"Its session “{session.name}” is being pulled."
             progress.progress = 0.0
             if await self._take(client, session, progress):
                 stored.add(session.identifier)
-                await self._store.write(partial(_note, session=session, robot=robot.name))
+                await self._store.write(partial(note_pulled, session=session, robot=robot.name))
                 await asyncio.to_thread(self._count, robot.name, progress)
         await self._report(
             client, [entry for entry in sessions if entry.identifier in stored and not entry.archived]
@@ -178,12 +183,22 @@ class SessionPull:
         else:
             progress.phase, progress.text = "done", "All of its sessions are in the archive."
 
-    def _find_known(self, identifiers: Sequence[str]) -> tuple[set[str], set[str], set[str]]:
+    async def _waits(self, client: RobotClient, progress: _Progress, lacking: int) -> bool:
+        """Return whether the pull must wait: what a robot does under water goes first."""
+        progress.lacking = lacking
+        armed = await asyncio.to_thread(client.is_armed)
+        if armed:
+            progress.phase, progress.text = "armed", "It is armed. Its sessions are pulled afterwards."
+        return armed
+
+    def _find_known(
+        self, identifiers: Sequence[str]
+    ) -> tuple[set[str], set[str], dict[str, tuple[str, int]]]:
         """Return those that are in the archive, those that are there no longer, or in its bin, and those that
-        are noted as pulled."""
+        are noted as pulled, with their robot and its edits as of the last look."""
         here: set[str] = set()
         gone: set[str] = set()
-        noted: set[str] = set()
+        noted: dict[str, tuple[str, int]] = {}
         with self._store.read() as database:
             for some in _parts(identifiers, IDENTIFIERS_AT_ONCE):
                 columns = select(SessionRow.identifier, SessionRow.state, SessionRow.deleted)
@@ -191,11 +206,12 @@ class SessionPull:
                     columns.where(col(SessionRow.identifier).in_(some))
                 ):
                     (here if state not in HIDDEN and deleted is None else gone).add(identifier)
-                those = col(PulledSessionRow.identifier).in_(some)
-                noted.update(database.exec(select(PulledSessionRow.identifier).where(those)))
-        return here, (gone | noted) - here, noted
+                row = PulledSessionRow
+                rows = select(row.identifier, row.robot, row.edits).where(col(row.identifier).in_(some))
+                noted |= {identifier: (robot, edits) for identifier, robot, edits in database.exec(rows)}
+        return here, (gone | noted.keys()) - here, noted
 
-    async def _take(self, client: RobotClient, session: RobotsSession, progress: _Progress) -> bool:
+    async def _take(self, client: RobotClient, session: SessionEdits, progress: _Progress) -> bool:
         """Bring a session into the archive; return False where it cannot be read.
 
         Raise RobotAnswerError, FileWriteError, OSError, StoreError, PullStoppedError.
@@ -232,7 +248,7 @@ class SessionPull:
         await asyncio.to_thread(client.remove_export, export)
         return True
 
-    async def _export(self, client: RobotClient, session: RobotsSession) -> RobotsExport:
+    async def _export(self, client: RobotClient, session: SessionEdits) -> RobotsExport:
         export = await asyncio.to_thread(client.find_export, session.identifier)
         if export is None:
             export = await asyncio.to_thread(client.begin_export, session.id)
@@ -243,14 +259,9 @@ class SessionPull:
             raise RobotAnswerError(f"It cannot make an archive of “{session.name}”: {export.problem}")
         return export
 
-    async def _report(self, client: RobotClient, sessions: Sequence[RobotsSession]) -> None:
+    async def _report(self, client: RobotClient, sessions: Sequence[SessionEdits]) -> None:
         for some in _parts([session.identifier for session in sessions], ARCHIVED_MAX):
             await asyncio.to_thread(client.note_archived, some)
-
-
-def _note(connection: Connection, session: RobotsSession, robot: str) -> None:
-    values = {"identifier": session.identifier, "robot": robot, "pulled": time()}
-    connection.execute(insert(PulledSessionRow).values(values))
 
 
 def _parts(items: Sequence[str], size: int) -> Iterable[Sequence[str]]:

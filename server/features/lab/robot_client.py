@@ -3,10 +3,11 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from email.message import Message
 from http.client import HTTPResponse
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, TypeVar
+
+from pydantic import AwareDatetime, Field, FiniteFloat, TypeAdapter, ValidationError
 
 from server.http.pinned_requests import (
     OtherServerRefusedError,
@@ -16,10 +17,13 @@ from server.http.pinned_requests import (
     read_document,
     read_piece,
 )
+from server.library.schemas import ARCHIVED_MAX, NOTES_MAX, SHOWN_MAX, SessionEdits
 from server.platform.paired_robots import PairedRobot
+from server.platform.schema_base import Schema
+
+T = TypeVar("T")
 
 SECONDS = 20.0
-PAGE = 200
 PIECE_BYTES = 1 << 14
 """Of a download: less than this is lost where the connection breaks."""
 PARTIAL = 206
@@ -45,14 +49,26 @@ class PullStoppedError(Exception):
     """The pull ends: what has arrived stays, and the rest is fetched later."""
 
 
-@dataclass(frozen=True, slots=True)
-class RobotsSession:
-    """A session on a robot."""
+class RobotsBookmark(Schema):
+    """A bookmark on a robot; `time` in s since the session's start."""
 
-    id: int
-    identifier: str
-    name: str
-    archived: bool
+    time: FiniteFloat
+    text: Annotated[str, Field(max_length=NOTES_MAX)]
+    made: AwareDatetime
+
+
+class RobotsTexts(Schema):
+    """The texts of a session on a robot, which people change, and its dates, which the robot corrects."""
+
+    name: Annotated[str, Field(max_length=1000)]
+    note: Annotated[str, Field(max_length=NOTES_MAX)]
+    tags: Annotated[list[Annotated[str, Field(max_length=1000)]], Field(max_length=1000)]
+    marks: Annotated[list[RobotsBookmark], Field(max_length=SHOWN_MAX)]
+    started: AwareDatetime
+    ended: AwareDatetime
+
+
+SESSIONS, TEXTS = TypeAdapter(list[SessionEdits]), TypeAdapter(RobotsTexts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,20 +97,20 @@ class RobotClient:
         """Return whether the robot is armed; True where it does not say so."""
         return bool(self._ask("GET", "/robot").get("armed", True))
 
-    def sessions(self) -> list[RobotsSession]:
+    def sessions(self) -> list[SessionEdits]:
         """Return the ended sessions outside the bin, newest first."""
-        listed: list[RobotsSession] = []
-        path: str | None = f"/sessions?limit={PAGE}"
-        while path is not None:
-            with self._open("GET", path) as answer:
-                rows: list[Mapping[str, Any]] = read_document(self._robot.address, answer)
-                path = _following(answer.headers)
-            listed += [
-                RobotsSession(row["id"], row["identifier"], row["name"], row["archived"] is not None)
-                for row in rows
-                if row["state"] != "recording"
-            ]
-        return listed
+        listed: list[SessionEdits] = []
+        path = "/sessions/edits"
+        while True:
+            rows = self._read(SESSIONS, path)
+            listed += rows
+            if len(rows) < ARCHIVED_MAX:
+                return listed
+            path = f"/sessions/edits?before={rows[-1].id}"
+
+    def texts(self, session: SessionEdits) -> RobotsTexts:
+        """Return what people may have changed of a session."""
+        return self._read(TEXTS, f"/sessions/{session.id}")
 
     def find_export(self, identifier: str) -> RobotsExport | None:
         """Return an archive of the session that the robot has or makes; None without one."""
@@ -143,6 +159,12 @@ class RobotClient:
         """Tell the robot that these sessions are in the archive."""
         self._ask("POST", "/sessions/archived", {"identifiers": list(identifiers)})
 
+    def _read(self, kind: TypeAdapter[T], path: str) -> T:
+        try:
+            return kind.validate_python(self._ask("GET", path))
+        except ValidationError as problem:
+            raise RobotAnswerError(f"Its answer to {path} is not valid: {problem}") from problem
+
     def _ask(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:
         with self._open(method, path, body) as answer:
             return read_document(self._robot.address, answer)
@@ -180,12 +202,6 @@ class RobotClient:
         except OtherServerRefusedError as problem:
             text = REVOKED if problem.status == SIGNED_OUT else str(problem)
             raise RobotAnswerError(text, problem.status) from problem
-
-
-def _following(headers: Message) -> str | None:
-    """Return the path below /api of the next page; None at the end."""
-    link = headers.get("link", "")
-    return link.partition("<")[2].partition(">")[0].removeprefix("/api") or None
 
 
 def _export(job: Mapping[str, Any]) -> RobotsExport:

@@ -22,6 +22,7 @@ from server.library.schemas import (
     ArchivedSessions,
     SessionChanges,
     SessionDetail,
+    SessionEdits,
     SessionGroup,
 )
 from server.library.storage import Storage, measure
@@ -29,7 +30,7 @@ from server.library.timeline import Timeline, read_timeline
 from server.platform.errors import ConflictError, InvalidError, NotFoundError
 from server.platform.settings import Settings
 from server.platform.store import Store
-from server.recording.schemas import Session
+from server.recording.schemas import Session, SessionNumber
 from server.recording.session import UnknownSessionError
 
 LEFT_OUT = "Left-Out"
@@ -92,6 +93,17 @@ def list_session_controllers(catalogue: Provided[Catalogue]) -> list[str]:
 def list_session_robots(catalogue: Provided[Catalogue]) -> list[str]:
     """List the names of the robots that recorded some session; at most a hundred."""
     return catalogue.robots()
+
+
+@router.operation("GET /sessions/edits", Need.VIEWER)
+def list_session_edits(
+    catalogue: Provided[Catalogue], before: Annotated[SessionNumber | None, Query()] = None
+) -> list[SessionEdits]:
+    """List the sessions that have ended, newest first, with the number of their edits; for a lab's archive.
+
+    At most a thousand; with `before` only those of lower numbers.
+    """
+    return catalogue.edits(before)
 
 
 @router.operation("GET /tags", Need.VIEWER)

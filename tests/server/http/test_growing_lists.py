@@ -47,7 +47,7 @@ from server.library.crafts import CRAFTS_MAX
 from server.library.film import SPANS_SHOWN
 from server.library.listing import COLUMNS_SHOWN, GROUPS_MAX, PAGE_MAX, TAGS_SHOWN
 from server.library.missions import MISSIONS_SHOWN
-from server.library.schemas import SHOWN_MAX
+from server.library.schemas import ARCHIVED_MAX, SHOWN_MAX
 from server.library.snapshots import SNAPSHOTS_SHOWN
 from server.platform.paired_robots import ROBOTS_MAX
 from server.platform.settings import Settings
@@ -103,6 +103,7 @@ LIMITS = {
     "/api/sessions summary modes": NAMES_MAX,
     "/api/sessions tags": TAGS_MAX,
     "/api/sessions/controllers": TAGS_SHOWN,
+    "/api/sessions/edits": ARCHIVED_MAX,
     "/api/sessions/groups": GROUPS_MAX,
     "/api/sessions/robots": TAGS_SHOWN,
     "/api/sessions/{session} summary cards": NAMES_MAX,

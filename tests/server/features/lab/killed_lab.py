@@ -17,6 +17,7 @@ from server.cli import main
 from server.features.comparison import figure_worker
 from server.features.exports.imports import Imports
 from server.features.lab import pull, robot_client
+from server.features.lab.edits import note_pulled
 from server.http.pinned_requests import read_piece
 from server.library import retention
 
@@ -54,7 +55,7 @@ def place_kills(folder: Path) -> None:
 
     robot_client.read_piece = read_some  # type: ignore[attr-defined]
     Imports._change = die_before("import", folder, Imports._change)  # type: ignore[method-assign]
-    pull._note = die_before("note", folder, pull._note)
+    pull.note_pulled = die_before("note", folder, note_pulled)  # type: ignore[attr-defined]
     figure_worker._store = die_before("figures", folder, figure_worker._store)
 
 

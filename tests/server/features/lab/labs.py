@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import httpx
 
+from robot_runtime.config import ZenohConfig
 from server.app import create_app
 from server.container import Container
 from server.http.listener import open_socket
@@ -15,6 +16,7 @@ from server.http.serving import make_server
 from server.platform.schema import prepare
 from server.platform.settings import Settings
 from server.processes.supervisor import plan
+from tests.server.ports import reserved_port
 from tests.server.waiting import SECONDS, until
 from tests.shell import ShellAuth
 
@@ -38,9 +40,11 @@ async def serve_lab(settings: Settings, archive: str = "") -> AsyncIterator[Serv
     """Run a lab on a port of the system's choice, with its archive at this URL or in its folder."""
     settings.data.lab.write_text(archive)
     prepare(settings.data)
-    with open_socket("127.0.0.1", 0) as listener:
+    with open_socket("127.0.0.1", 0) as listener, reserved_port() as router_port:
         port = listener.getsockname()[1]
-        settings = replace(settings, lab=True).with_section(replace(settings.server, port=port))
+        zenoh = ZenohConfig(listen=[f"tls/127.0.0.1:{router_port}"])
+        settings = replace(settings, lab=True, zenoh=zenoh)
+        settings = settings.with_section(replace(settings.server, port=port))
         app = create_app(settings, plan(settings))
         server = make_server(app, None, settings.server.proxies)
         running = asyncio.create_task(server.serve(sockets=[listener]))

@@ -19,6 +19,7 @@ from server.features.exports.imports import Imports
 from server.features.lab import pull as pull_module
 from server.features.lab import robot_client
 from server.features.lab.pull import SessionPull
+from server.features.lab.robot_client import RobotClient
 from server.http.pinned_requests import UnreachableError
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import SHELL
@@ -27,7 +28,7 @@ from server.library.catalogue import Catalogue
 from server.library.content import Recording
 from server.platform.database_copies import sum_file
 from server.platform.disk_space import FileWriteError
-from server.platform.models import Chunk
+from server.platform.models import Chunk, PulledSessionRow
 from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.platform.store import Reader, Store
@@ -133,6 +134,67 @@ async def test_nothing_comes_twice_not_even_what_was_purged(robot: PulledRobot) 
             lambda: [session.name for session in listing.page().sessions] == ["second"], "the second session"
         )
         await see(lab, "done")
+
+
+@pytest.mark.parametrize("database", ["sqlite", "postgresql"])
+async def test_edits_on_the_robot_follow_and_replace_none_of_the_lab_s(
+    robot: PulledRobot, database: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def edits_in(lab: ServedLab) -> int:
+        with lab.get(Store).read() as store:
+            return store.exec(select(PulledSessionRow.edits)).one()
+
+    async def follow(lab: ServedLab) -> dict[str, Any]:
+        (edited,) = robot.get(Catalogue).edits(None)
+        lab.get(SessionPull).wake()
+        await until(lambda: edits_in(lab) == edited.edits, "the edits")
+        (here,) = (await lab.api.get("/sessions")).json()
+        detail = (await lab.api.get(f"/sessions/{here['id']}")).json()
+        assert isinstance(detail, dict)
+        return detail
+
+    async with lab_of(robot.settings, new_archive() if database == "postgresql" else "") as lab:
+        await introduce(lab, robot)
+        await see(lab, "done")
+        (there,) = (await robot.api.get("/sessions")).json()
+        (here,) = (await lab.api.get("/sessions")).json()
+        theirs, ours = f"/sessions/{there['id']}", f"/sessions/{here['id']}"
+        # No samples are fetched again.
+        monkeypatch.delattr(RobotClient, "begin_export")
+
+        await robot.api.patch(theirs, json={"name": "renamed", "tags": ["sea"]})
+        made = await robot.api.post(f"{theirs}/markers", json={"time": 0.0, "text": "lost the light"})
+        made.raise_for_status()
+        seen = await follow(lab)
+        assert (seen["name"], seen["tags"]) == ("renamed", ["sea"])
+        assert [(mark["time"], mark["text"]) for mark in seen["marks"]] == [
+            (0.0, "turned"),
+            (0.0, "lost the light"),
+        ]
+
+        await lab.api.patch(ours, json={"name": "of the lab"})
+        await robot.api.patch(theirs, json={"name": "of the robot", "note": "windy"})
+        mark = (await robot.api.get(theirs)).json()["marks"][0]["id"]
+        await robot.api.delete(f"{theirs}/markers/{mark}")
+        seen = await follow(lab)
+        assert (seen["name"], seen["note"], seen["tags"]) == ("of the lab", "windy", ["sea"])
+        assert [mark["text"] for mark in seen["marks"]] == ["lost the light"]
+
+        await robot.api.delete(theirs)
+        await robot.api.post(f"{theirs}/purge")
+        lab.get(SessionPull).wake()
+        assert (await see(lab, "done"))["sessions"] == 1
+
+
+async def test_what_is_in_the_robot_s_bin_comes_once_it_is_restored(robot: PulledRobot) -> None:
+    (there,) = (await robot.api.get("/sessions")).json()
+    await robot.api.delete(f"/sessions/{there['id']}")
+    async with lab_of(robot.settings) as lab:
+        await introduce(lab, robot)
+        assert (await see(lab, "done"))["sessions"] == 0
+        await robot.api.post(f"/sessions/{there['id']}/restore")
+        lab.get(SessionPull).wake()
+        await until(lambda: lab.get(Catalogue).page().total == 1, "the session")
 
 
 async def test_an_armed_robot_is_left_alone(robot: PulledRobot) -> None:
