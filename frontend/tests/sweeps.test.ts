@@ -114,12 +114,16 @@ describe('shading', () => {
 
 describe('words', () => {
   it('say how sure it is that the best is better', () => {
-    const next = (difference: number, low: number | null, high: number | null) => bestWords({ next: { variant: 7, difference, low, high } }, RMSE);
-    expect(next(0.021, 0.012, 0.03)).toBe('Better than the next, variant 7, by 0.0210 m: 0.0120 to 0.0300 by equal seeds.');
-    expect(next(-0.021, -0.03, -0.012)).toBe('Better than the next, variant 7, by 0.0210 m: 0.0120 to 0.0300 by equal seeds.');
-    expect(next(0.001, -0.002, 0.004)).toBe('Not told apart from the next, variant 7: by equal seeds the difference may be zero.');
+    const own = { low: 0.04, high: 0.06 };
+    const next = (difference: number, low: number | null, high: number | null, other = measured(0.09)) => bestWords({ ...own, next: { variant: 7, difference, low, high } }, RMSE, other);
+    expect(next(0.04, 0.03, 0.05)).toBe('Better than the next, variant 7, by 0.0400 m; with equal seeds they differ by 0.0300 to 0.0500 m.');
+    expect(next(0.001, -0.002, 0.004)).toBe('Not told apart from the next, variant 7: with equal seeds they differ by \u22120.0020 to 0.0040 m, which may be zero.');
+    expect(next(0, 0, 0)).toBe('The next, variant 7, is equal to it with every seed.');
     expect(next(0.001, null, null)).toMatch(/^Better than variant 7 by 0.0010 m with one seed\./);
-    expect(bestWords({ next: null }, RMSE)).toBe('It is the only variant.');
+    expect(bestWords({ ...own, next: null }, RMSE)).toBe('It is the only variant.');
+    // Seeds that shift both alike leave a small difference sure, which is never written as none.
+    const sure = next(0.00002, 0.00001, 0.00003, measured(0.05));
+    expect(sure).toBe('Better than the next, variant 7, by 0.00002 m; with equal seeds they differ by 0.00001 to 0.00003 m. This is sure though the intervals of both means overlap: a seed shifts both alike.');
   });
 
   it('write values and means', () => {

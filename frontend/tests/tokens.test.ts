@@ -55,6 +55,10 @@ describe.each([
     }
   });
 
+  it.each(['text', 'muted', 'accent', 'code-text', 'code-number'])('%s of a document can be read, in the line with the cursor, too', (name) => {
+    for (const ground of ['well', 'raised']) expect(contrast(of(name), of(ground)), ground).toBeGreaterThanOrEqual(textLeast);
+  });
+
   it('an alarm can be read on its own ground', () => {
     for (const ground of ['ground', 'panel']) {
       expect(contrast(of('alarm'), lay(selector, 'alarm-soft', of(ground))), ground).toBeGreaterThanOrEqual(textLeast);

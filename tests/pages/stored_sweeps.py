@@ -98,7 +98,7 @@ def _outcome(number: int, values: tuple[float, ...], seed: int, *, failed: bool)
     """Return figures whose RMSE is the least at kp 10 and kd 2, and differs a little by the seed."""
     kp, kd = (*values, 2.0)[:2]
     size = 0.02 + 0.001 * abs(kp - 10) + 0.01 * abs(kd - 2)
-    measured = {"rmse": size + 0.0005 * seed, "overshoot": 200 * size, "effort": 500 * size + seed}
+    measured = {"rmse": size + 0.002 * seed, "overshoot": 200 * size, "effort": 500 * size + seed}
     return RunOutcome(
         key=f"{values} {number}",
         problem=NEVER_ARMED if failed else "",

@@ -1,11 +1,15 @@
+import { count } from '../format';
 import type { Answer } from '../http';
 import { useLive } from '../live/live.svelte';
+import { parts } from '../texts/parts';
 import type { Draft } from './draft';
 
 /** ms without a change after which the server is asked */
 const PAUSE = 250;
 /** ms after a check without an answer, or refused for now, until the next */
 const AGAIN = 2000;
+/** characters of a text: the server reads no longer one (`BYTES_MAX` of robot_runtime/contract/toml_text.py) */
+const MOST = 60_000;
 
 /** A document that somebody writes, and what the server says to it. To be made while a component begins. */
 export class CheckedText<Check extends { readonly problems: readonly unknown[] }> {
@@ -27,8 +31,12 @@ export class CheckedText<Check extends { readonly problems: readonly unknown[] }
     const live = useLive();
     $effect(() => {
       // What could not be checked while the server was away is checked when it is back.
-      if (!this.#begun || live.connection !== 'open') return;
+      if (!this.#begun || live.connection !== 'open') return undefined;
       const asked = this.#text;
+      if (asked.length > MOST) {
+        this.problem = parts.code.tooLong(count(asked.length), count(MOST));
+        return undefined;
+      }
       let outdated = false;
       const look = async () => {
         const answer = await ask(asked);

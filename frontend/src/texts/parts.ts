@@ -35,6 +35,9 @@ export const parts = {
   selected: (count: number) => `${count} selected`,
   download: 'Download',
   export: 'Export',
+  ofAll: (done: string, all: string) => `${done} of ${all}`,
+  /** of a long computation */
+  cancelling: { ask: 'Cancel…', no: 'Continue', busy: 'Cancelling…' },
   all: 'All',
   none: 'None',
   chipHint: 'Press an entry, or point at it, to see its meaning.',
@@ -70,6 +73,7 @@ export const parts = {
   code: {
     problems: 'Problems',
     line: (line: number) => `Line ${line}`,
+    tooLong: (characters: string, most: string) => `The text has ${characters} characters; there can be ${most} at most.`,
     keys: 'Tab leaves the text. F8: next problem. Ctrl+Z: undo. Esc is STOP.',
   },
   notLoaded: 'This part of the page could not be loaded: the server is offline or was updated. The robot is not affected.',

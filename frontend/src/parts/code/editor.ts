@@ -39,8 +39,8 @@ const FROM_OUTSIDE = Annotation.define<boolean>();
 const colours = HighlightStyle.define([
   { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: 'var(--text)' },
   { tag: tags.atom, color: 'var(--accent)', fontWeight: '600' },
-  { tag: [tags.string, tags.special(tags.string)], color: 'var(--series-wanted)' },
-  { tag: [tags.number, tags.bool], color: 'var(--series-measured)' },
+  { tag: [tags.string, tags.special(tags.string)], color: 'var(--code-text)' },
+  { tag: [tags.number, tags.bool], color: 'var(--code-number)' },
   { tag: tags.comment, color: 'var(--muted)', fontStyle: 'italic' },
 ]);
 

@@ -6,6 +6,7 @@ import type { Value } from './plane';
 
 /** digits of a parameter's value: more tell nothing, and a search gives fifteen */
 const DIGITS = 4;
+const DECIMALS_MOST = 8;
 
 export const valueText = (value: Value | null | undefined): string =>
   value === null || value === undefined ? texts.bySeed : typeof value === 'number' ? String(Number(value.toPrecision(DIGITS))).replace('-', '\u2212') : value;
@@ -27,15 +28,25 @@ export function meanWords(one: FigureInterval | undefined, figure: FigureMeaning
 export const valuesWords = (variant: Pick<SweepVariant, 'values'>, parameters: readonly Pick<SweepParameter, 'name'>[], names: ReadonlyMap<string, string>): string =>
   parameters.map(({ name }, place) => `${names.get(name) ?? name} ${valueText(variant.values[place])}`).join(', ');
 
-/** How sure it is that the best is better than the next: by the differences of runs with equal seeds. */
-export function bestWords({ next }: Pick<RankedBest, 'next'>, figure: FigureMeaning): string {
+/**
+ * How sure it is that the best is better than the next, whose mean is `other`: by the differences of runs with equal seeds.
+ * These may be sure where the intervals of the means overlap, since a seed shifts all variants alike.
+ */
+export function bestWords({ low: from, high: to, next }: Omit<RankedBest, 'variant' | 'mean'>, figure: FigureMeaning, other?: FigureInterval): string {
   if (next === null) return texts.best.alone;
-  const { difference, low, high } = next;
-  if (low === null || high === null) return texts.best.oneSeed(next.variant, withUnit(Math.abs(difference), figure));
-  if (low <= 0 && high >= 0) return texts.best.notApart(next.variant);
-  const [least, most] = [Math.abs(low), Math.abs(high)].sort((one, other) => one - other) as [number, number];
-  return texts.best.better(next.variant, withUnit(Math.abs(difference), figure), fixed(least, figure.decimals), fixed(most, figure.decimals));
+  const { variant, difference, low, high } = next;
+  const shown = { unit: figure.unit, decimals: Math.max(figure.decimals, decimalsOf(difference)) };
+  if (low === null || high === null) return texts.best.oneSeed(variant, withUnit(difference, shown));
+  if (low === 0 && high === 0) return texts.best.equal(variant);
+  const least = fixed(low, shown.decimals);
+  if (low <= 0) return texts.best.notApart(variant, least, withUnit(high, shown));
+  const words = texts.best.better(variant, withUnit(difference, shown), least, withUnit(high, shown));
+  const overlap = [from, to, other?.low, other?.high].every((end) => typeof end === 'number') && Number(from) <= Number(other?.high) && Number(other?.low) <= Number(to);
+  return overlap ? `${words} ${texts.best.overlap}` : words;
 }
+
+/** The decimals by which a difference is not written as 0. */
+const decimalsOf = (difference: number): number => (difference === 0 ? 0 : Math.min(Math.ceil(-Math.log10(Math.abs(difference))), DECIMALS_MOST));
 
 /** values of a list that are written one by one */
 const LISTED = 8;
