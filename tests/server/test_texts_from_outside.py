@@ -221,7 +221,7 @@ READ_THEIR_OWN = {
     "robot_runtime/generate/__main__.py",
     "robot_runtime/generate/markdown.py",
     "robot_runtime/missions/library.py",
-    "server/features/backup/command.py",
+    "server/features/backup/restoration.py",
     "server/features/bench/live_viewer.py",
     "server/features/bench/measurement.py",
     "server/features/bench/process_figures.py",
