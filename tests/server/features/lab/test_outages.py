@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, closing
+from contextlib import asynccontextmanager, closing, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -58,8 +58,9 @@ class LabProcess:
             )
 
     def kill(self) -> None:
-        """Kill all of it at once."""
-        os.killpg(self.process.pid, signal.SIGKILL)
+        """Kill all of it at once, if anything of it is still there."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
 
     async def serves(self) -> bool:
