@@ -1,12 +1,6 @@
 #!/bin/sh
 # Chromium's engine without the windows around it. It gives way to the robot, as chromium.sh does. Where its test gives way
 # to tests in real time, its session does so, too: it has one of its own (tests/beside.py).
-# Without a process in reserve, which it would start for every page and nobody would use.
-for argument do
-  case $argument in --disable-features=*) argument=$argument,SpareRendererForSitePerProcess ;; esac
-  set -- "$@" "$argument"
-  shift
-done
 program=/usr/lib/chromium/chromium-headless-shell
 niceness=$(nice)
 [ "$niceness" -le 0 ] || { echo $((niceness < 14 ? niceness + 5 : 19)) > /proc/self/autogroup; } 2> /dev/null

@@ -17,7 +17,7 @@ from server.platform.settings import DataFolder
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE
 from tests.browser.conftest import put_to_rest
 from tests.browser.driving import arm_by_hand, expect_surge
-from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, SMALL_PHONE, opened_page, shared_page
+from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, SMALL_PHONE, opened_page
 from tests.exports import export_session
 from tests.proofs.watching import FinWatch
 from tests.stack import Stack
@@ -78,7 +78,7 @@ def test_keys_drive_only_on_a_visible_page(in_a_window: Page, stack: Stack) -> N
     left = look_away(page)
     expect_surge(page, "")
     # The page sends nothing more; the fins rest, and then the robot stops by itself.
-    stopped = page.get_by_text("FAILSAFE", exact=True)
+    stopped = page.context.pages[0].get_by_text("FAILSAFE", exact=True)
     expect(stopped).to_be_visible()
     stack.api.post(f"/sessions/{session}/stop").raise_for_status()
 
@@ -201,17 +201,19 @@ def test_depth_and_heading_are_held_while_driving(page: Page) -> None:
 def test_a_phone_shows_the_picture_with_the_sticks(
     browser: Browser, stack: Stack, cookies: StorageState, size: ViewportSize
 ) -> None:
-    with shared_page(browser, cookies, size, has_touch=True, is_mobile=True) as page:
-        page.goto(stack.url)
-        arm_by_hand(page)
-        seen = [
-            page.get_by_role("img", name=re.compile("^Camera")).first,
-            page.get_by_role("img", name="left stick"),
-            page.get_by_role("img", name="right stick"),
-            page.get_by_role("button", name="STOP"),
-        ]
-        for element in seen:
-            expect(element).to_be_in_viewport(ratio=1)
+    context = browser.new_context(viewport=size, storage_state=cookies, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(stack.url)
+    arm_by_hand(page)
+    seen = [
+        page.get_by_role("img", name=re.compile("^Camera")).first,
+        page.get_by_role("img", name="left stick"),
+        page.get_by_role("img", name="right stick"),
+        page.get_by_role("button", name="STOP"),
+    ]
+    for element in seen:
+        expect(element).to_be_in_viewport(ratio=1)
+    context.close()
     put_to_rest(stack)
 
 

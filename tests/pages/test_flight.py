@@ -2,14 +2,13 @@
 
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
 from tests.browser.axe import AXE, faults
-from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, shared_page
+from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE
 from tests.pages.dive_site import DiveSite
 from tests.pages.flying import Flown
 
@@ -52,20 +51,22 @@ globalThis.escape = () => change(null);
 """
 
 
-@contextmanager
 def opened(
     browser: Browser, site: DiveSite, cookies: StorageState, size: ViewportSize, *scripts: str
-) -> Iterator[tuple[Page, Flown]]:
-    """A page at Operate whose robot can be flown, and that robot."""
+) -> tuple[Page, Flown]:
+    """Return a page at Operate whose robot can be flown, and that robot."""
     options: dict[str, Any] = {"has_touch": True, "is_mobile": True} if size != DESKTOP else {}
-    with shared_page(browser, cookies, size, reduced_motion="reduce", color_scheme="dark", **options) as page:
-        page.add_init_script(path=AXE)
-        for script in (BY_ITSELF, *scripts):
-            page.add_init_script(script)
-        flown = Flown(page)
-        page.goto(f"{site.url}/#/operate")
-        expect(page.get_by_role("button", name="Control: you have control")).to_be_visible()
-        yield page, flown
+    context = browser.new_context(
+        viewport=size, storage_state=cookies, reduced_motion="reduce", color_scheme="dark", **options
+    )
+    context.add_init_script(path=AXE)
+    for script in (BY_ITSELF, *scripts):
+        context.add_init_script(script)
+    page = context.new_page()
+    flown = Flown(page)
+    page.goto(f"{site.url}/#/operate")
+    expect(page.get_by_role("button", name="Control: you have control")).to_be_visible()
+    return page, flown
 
 
 @pytest.fixture(params=list(SIZES.values()), ids=list(SIZES))
@@ -73,11 +74,12 @@ def flying(
     request: pytest.FixtureRequest, browser: Browser, site: DiveSite, cookies: StorageState, _at_rest: None
 ) -> Iterator[tuple[Page, Flown]]:
     """The flight view, which has come by itself, and the robot that it shows."""
-    with opened(browser, site, cookies, request.param, GRANTED) as (page, flown):
-        flown.mode = "manual"
-        expect(page.get_by_role("heading", name="Flight view")).to_be_attached()
-        flown.show()
-        yield page, flown
+    page, flown = opened(browser, site, cookies, request.param, GRANTED)
+    flown.mode = "manual"
+    expect(page.get_by_role("heading", name="Flight view")).to_be_attached()
+    flown.show()
+    yield page, flown
+    page.context.close()
 
 
 @pytest.fixture
@@ -85,8 +87,9 @@ def desk(
     browser: Browser, site: DiveSite, cookies: StorageState, _at_rest: None, request: pytest.FixtureRequest
 ) -> Iterator[tuple[Page, Flown]]:
     """Operate on a desktop, where these scripts came first."""
-    with opened(browser, site, cookies, DESKTOP, *getattr(request, "param", ())) as desk:
-        yield desk
+    page, flown = opened(browser, site, cookies, DESKTOP, *getattr(request, "param", ()))
+    yield page, flown
+    page.context.close()
 
 
 def test_picture_and_instruments_fill_the_window(flying: tuple[Page, Flown]) -> None:

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSize, expect
 
 from tests.browser.axe import AXE, FOR_SUNLIGHT, faults
-from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, shared_page
+from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE
 from tests.pages.dive_site import DiveSite
 
 # In place of a browser's own gamepads, which no test can move.
@@ -36,16 +36,20 @@ def size(request: pytest.FixtureRequest) -> Any:
 @pytest.fixture
 def shown(browser: Browser, site: DiveSite, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
     """The page, with a gamepad whose sticks rest."""
-    with shared_page(browser, cookies, size, reduced_motion="reduce", color_scheme="dark") as page:
-        page.add_init_script(FAKE)
-        page.add_init_script(path=AXE)
-        complaints: list[str] = []
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.goto(f"{site.url}/#/gamepads")
-        expect(page.get_by_text("No gamepad seen")).to_be_visible()
-        page.evaluate(PLUG_IN)
-        expect(page.get_by_role("region", name="Test pad")).to_be_visible()
-        yield page
+    context = browser.new_context(
+        viewport=size, storage_state=cookies, reduced_motion="reduce", color_scheme="dark"
+    )
+    context.add_init_script(FAKE)
+    context.add_init_script(path=AXE)
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(f"{site.url}/#/gamepads")
+    expect(page.get_by_text("No gamepad seen")).to_be_visible()
+    page.evaluate(PLUG_IN)
+    expect(page.get_by_role("region", name="Test pad")).to_be_visible()
+    yield page
+    context.close()
     assert complaints == []
 
 

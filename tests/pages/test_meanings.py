@@ -2,22 +2,24 @@
 
 from playwright.sync_api import Browser, Page, StorageState, expect
 
-from tests.browser.opening import PHONE, shared_page
+from tests.browser.opening import PHONE
 from tests.browser.site import Site
 
 
 def test_a_tap_shows_the_meaning_of_a_gain(browser: Browser, site: Site, cookies: StorageState) -> None:
-    with shared_page(browser, cookies, PHONE, has_touch=True, is_mobile=True) as page:
-        page.goto(site.url)
-        # Until then the reasons against arming change, which moves what stands below them.
-        expect(page.get_by_role("region", name="Arm").get_by_text("Ready to arm")).to_be_visible()
-        page.get_by_role("tab", name="Control").tap()
-        meaning = page.get_by_text("Set point of the depth", exact=True)
-        expect(meaning).to_be_hidden()
-        page.locator("summary", has_text="default").tap()
-        expect(meaning).to_be_visible()
-        page.locator("summary", has_text="default").tap()
-        expect(meaning).to_be_hidden()
+    context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(site.url)
+    # Until then the reasons against arming change, which moves what stands below them.
+    expect(page.get_by_role("region", name="Arm").get_by_text("Ready to arm")).to_be_visible()
+    page.get_by_role("tab", name="Control").tap()
+    meaning = page.get_by_text("Set point of the depth", exact=True)
+    expect(meaning).to_be_hidden()
+    page.locator("summary", has_text="default").tap()
+    expect(meaning).to_be_visible()
+    page.locator("summary", has_text="default").tap()
+    expect(meaning).to_be_hidden()
+    context.close()
 
 
 def test_a_key_shows_the_meaning_of_a_link_figure(page: Page, site: Site) -> None:

@@ -4,7 +4,7 @@ import re
 
 from playwright.sync_api import Browser, Locator, Page, StorageState, ViewportSize, expect
 
-from tests.browser.opening import PHONE, shared_page
+from tests.browser.opening import PHONE
 from tests.browser.pages import topics
 from tests.browser.site import Site
 from tests.waiting import wait_for
@@ -16,20 +16,22 @@ ROOMY: ViewportSize = {"width": 1920, "height": 1080}
 def test_a_finger_asks_what_a_signal_and_an_axis_mean(
     browser: Browser, site: Site, cookies: StorageState
 ) -> None:
-    with shared_page(browser, cookies, PHONE, has_touch=True, is_mobile=True) as page:
-        page.goto(site.url)
-        # Until then the reasons against arming change, which moves what stands below them.
-        expect(page.get_by_role("region", name="Arm").get_by_text("Ready to arm")).to_be_visible()
-        for tab, panel, text in (
-            ("Motion", "Depth over time", "depth.depth: "),
-            ("Sensors", "Inertial sensor", "Axis pointing forwards"),
-        ):
-            page.get_by_role("tab", name=tab).tap()
-            shown = page.get_by_role("region", name=panel)
-            meaning = shown.get_by_text(text)
-            expect(meaning).to_be_hidden()
-            shown.locator("summary").first.tap()
-            expect(meaning).to_be_visible()
+    context = browser.new_context(viewport=PHONE, storage_state=cookies, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(site.url)
+    # Until then the reasons against arming change, which moves what stands below them.
+    expect(page.get_by_role("region", name="Arm").get_by_text("Ready to arm")).to_be_visible()
+    for tab, panel, text in (
+        ("Motion", "Depth over time", "depth.depth: "),
+        ("Sensors", "Inertial sensor", "Axis pointing forwards"),
+    ):
+        page.get_by_role("tab", name=tab).tap()
+        shown = page.get_by_role("region", name=panel)
+        meaning = shown.get_by_text(text)
+        expect(meaning).to_be_hidden()
+        shown.locator("summary").first.tap()
+        expect(meaning).to_be_visible()
+    context.close()
 
 
 def test_a_key_asks_what_the_quality_of_the_link_means(page: Page) -> None:

@@ -1,9 +1,9 @@
-"""Navigation: the heading of the next page gets the focus, and the current tab is in view."""
+"""Navigation: each page has its title, its heading gets the focus, and the current tab is in view."""
 
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
-from tests.browser.opening import shared_page
+from tests.browser.pages import PAGES, fill, show
 from tests.browser.site import Site
 
 NARROW: ViewportSize = {"width": 300, "height": 640}
@@ -12,6 +12,22 @@ TABS = {
     "parameters": "Parameters",
     "vision": "Vision",
 }
+
+
+def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, site: Site) -> None:
+    fill(site)
+    titles = {}
+    for view in PAGES:
+        show(page, site, view)
+        heading = page.get_by_role("heading", level=1)
+        expect(heading).to_have_count(1)
+        expect(page).to_have_title(f"{' '.join((heading.text_content() or '').split())} · µ-CAT")
+        titles[view.name] = page.title()
+    assert titles["operate"] == "Operate · µ-CAT"
+    assert titles["sessions"] == "Sessions · µ-CAT"
+    views = [name for name in titles if name.startswith(("tune-", "session-"))]
+    # Tune's views are one page, and those of a session have its name.
+    assert len(set(titles.values())) >= len(PAGES) - len(views) + 1, titles
 
 
 def test_signing_in_has_a_title(browser: Browser, site: Site) -> None:
@@ -43,12 +59,14 @@ def test_every_name_of_a_page_is_in_view_on_the_narrowest_phones(
     browser: Browser, site: Site, cookies: StorageState, width: int
 ) -> None:
     size: ViewportSize = {"width": width, "height": 640}
-    with shared_page(browser, cookies, size, has_touch=True) as page:
-        page.goto(site.first)
-        pages = page.get_by_role("navigation", name="Pages")
-        for link in pages.get_by_role("link").all():
-            expect(link).to_be_in_viewport(ratio=1)
-        assert pages.evaluate("(one) => one.scrollWidth - one.clientWidth") == 0
+    context = browser.new_context(viewport=size, storage_state=cookies, has_touch=True)
+    page = context.new_page()
+    page.goto(site.first)
+    pages = page.get_by_role("navigation", name="Pages")
+    for link in pages.get_by_role("link").all():
+        expect(link).to_be_in_viewport(ratio=1)
+    assert pages.evaluate("(one) => one.scrollWidth - one.clientWidth") == 0
+    context.close()
 
 
 def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, site: Site) -> None:
@@ -63,17 +81,17 @@ def test_changing_views_of_a_page_keeps_the_focus_on_the_tab(page: Page, site: S
 def test_the_current_tab_of_tune_is_in_view_where_there_is_little_room(
     browser: Browser, site: Site, cookies: StorageState
 ) -> None:
-    with shared_page(browser, cookies, NARROW, has_touch=True) as page:
-        for address, name in TABS.items():
-            page.goto(f"{site.url}/#/tune/{address}")
-            tabs = page.get_by_role("navigation", name="Tuning views")
-            tab = tabs.get_by_role("link", name=name)
-            expect(tab).to_have_attribute("aria-current", "page")
-            expect(tab).to_be_in_viewport(ratio=1)
-        # The last one: there is more before it, and that shows.
-        assert "gradient" in str(tabs.evaluate("(one) => getComputedStyle(one).maskImage"))
-        page.set_viewport_size({"width": 1440, "height": 900})
-        expect(tabs.get_by_role("link", name="Bench")).to_be_in_viewport(ratio=1)
-        page.wait_for_function(
-            "(one) => getComputedStyle(one).maskImage === 'none'", arg=tabs.element_handle()
-        )
+    context = browser.new_context(viewport=NARROW, storage_state=cookies, has_touch=True)
+    page = context.new_page()
+    for address, name in TABS.items():
+        page.goto(f"{site.url}/#/tune/{address}")
+        tabs = page.get_by_role("navigation", name="Tuning views")
+        tab = tabs.get_by_role("link", name=name)
+        expect(tab).to_have_attribute("aria-current", "page")
+        expect(tab).to_be_in_viewport(ratio=1)
+    # The last one: there is more before it, and that shows.
+    assert "gradient" in str(tabs.evaluate("(one) => getComputedStyle(one).maskImage"))
+    page.set_viewport_size({"width": 1440, "height": 900})
+    expect(tabs.get_by_role("link", name="Bench")).to_be_in_viewport(ratio=1)
+    page.wait_for_function("(one) => getComputedStyle(one).maskImage === 'none'", arg=tabs.element_handle())
+    context.close()

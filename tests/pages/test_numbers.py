@@ -4,17 +4,17 @@ import re
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, StorageState, expect
+from playwright.sync_api import Browser, Page, expect
 
-from tests.browser.opening import DESKTOP, shared_page
 from tests.browser.pages import SESSIONS, fill
 from tests.pages.dive_site import DiveSite
 
 
 @pytest.fixture(params=["en-US", "de-DE"])
-def page(request: pytest.FixtureRequest, browser: Browser, cookies: StorageState) -> Iterator[Page]:
-    with shared_page(browser, cookies, DESKTOP, locale=request.param) as page:
-        yield page
+def page(request: pytest.FixtureRequest, browser: Browser, cookies: object) -> Iterator[Page]:
+    context = browser.new_context(locale=request.param, storage_state=cookies)  # type: ignore[arg-type]
+    yield context.new_page()
+    context.close()
 
 
 def test_an_export_says_why_it_refuses_a_range(page: Page, site: DiveSite) -> None:

@@ -11,7 +11,7 @@ from robot_runtime.clock import SteadyClock
 from robot_runtime.contract.documents import Mission
 from robot_runtime.contract.topics import BY_ID, BY_NAME
 from robot_runtime.transport.blocks import HEADER, Block, pack_documents
-from tests.browser.opening import LYING_PHONE, PHONE, SMALL_PHONE, shared_page
+from tests.browser.opening import LYING_PHONE, PHONE, SMALL_PHONE
 from tests.pages.dive_site import DiveSite
 
 # Every frame, from the first on: the places where the button has been.
@@ -87,9 +87,11 @@ def phone(
 ) -> Iterator[Page]:
     """A phone whose page is not open yet."""
     size: ViewportSize = request.param
-    with shared_page(browser, cookies, size, has_touch=True, is_mobile=True) as page:
-        page.add_init_script(FOLLOW)
-        yield page
+    context = browser.new_context(viewport=size, storage_state=cookies, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.add_init_script(FOLLOW)
+    yield page
+    context.close()
 
 
 def test_the_button_to_arm_stays_where_it_is(phone: Page, site: DiveSite) -> None:

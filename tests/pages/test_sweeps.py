@@ -127,7 +127,7 @@ def test_a_sweep_is_planned_and_its_problems_stand_in_their_lines(page: Page, sw
 
 
 def test_no_view_of_sweeps_has_a_serious_violation(page: Page, sweeps: DiveSite) -> None:
-    page.add_init_script(path=AXE)
+    page.context.add_init_script(path=AXE)
     for address in ("", f"/{GRID}", f"/{LINE}", f"/{GRID}?variant={WITHOUT_FIGURES}", f"/{CANCELLED}"):
         page.goto(f"{sweeps.url}/#/scenarios/sweeps{address}")
         page.reload()

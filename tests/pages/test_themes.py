@@ -7,7 +7,6 @@ from typing import Literal
 import pytest
 from playwright.sync_api import Browser, Locator, Page, StorageState, expect
 
-from tests.browser.opening import DESKTOP, shared_page
 from tests.browser.site import Site
 
 WIDTHS = (360, 390, 768, 1024, 1366, 1920)
@@ -24,18 +23,19 @@ def opened(
     forced: bool = False,
 ) -> Iterator[Page]:
     """The page on a device with these colours."""
-    with shared_page(
-        browser,
-        cookies,
-        DESKTOP,
+    context = browser.new_context(
+        storage_state=cookies,
+        viewport={"width": 1440, "height": 900},
         color_scheme=scheme,
         contrast=contrast,
         forced_colors="active" if forced else "none",
         reduced_motion="reduce",
-    ) as page:
-        page.goto(site.url)
-        expect(page.get_by_role("button", name="STOP")).to_be_visible()
-        yield page
+    )
+    page = context.new_page()
+    page.goto(site.url)
+    expect(page.get_by_role("button", name="STOP")).to_be_visible()
+    yield page
+    context.close()
 
 
 def theme(page: Page) -> Locator:
