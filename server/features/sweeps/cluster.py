@@ -32,7 +32,7 @@ SELDOM = {
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "5s",
 }
-"""How often a worker watches itself: by default some 150 times a second, each of which interrupts the run."""
+"""Settings of Dask by which a worker seldom watches itself: 150 times a second interrupt its run."""
 
 
 def read_certificates(scheduler: str, folder: str) -> Security | None:

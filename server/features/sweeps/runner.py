@@ -57,9 +57,9 @@ class ActiveSweep:
     notice: str = ""
     computed: int = 0
     seconds: float = 0.0
-    """That the computed runs took, one by one."""
+    """Sum of the times that the computed runs took, s."""
     last: float = 0.0
-    """Of the last run that was computed (loop's time, s)."""
+    """End of the last computed run (loop's time, s)."""
     runs: list[StoredRun] = field(default_factory=list)
     """Done, and not stored yet."""
 
