@@ -16,7 +16,7 @@ from server.http.json_bodies import JsonRoute
 from server.http.sign_in.confirmation import UnconfirmedError
 from server.http.sign_in.policy import LINKED, Need, needs
 from server.platform.errors import ApiError
-from server.platform.models import IDENTIFIER_MAX
+from server.platform.limits import IDENTIFIER_MAX
 from server.platform.schema_base import Schema
 
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])

@@ -7,9 +7,10 @@ from sqlalchemy import Connection, delete, update
 from sqlmodel import Session, col, func, select
 
 from robot_runtime.clock import Clock
-from server.library.schemas import NOTES_MAX, SHOWN_MAX, Bookmark
+from server.library.schemas import SHOWN_MAX, Bookmark
 from server.platform.edited_meanwhile import ChangedMeanwhileError
 from server.platform.errors import NotFoundError
+from server.platform.limits import NOTES_MAX
 from server.platform.models import BookmarkRow, SessionRow
 from server.platform.store import Store, insert_row
 from server.recording.recorder import Recorder

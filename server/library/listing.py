@@ -27,7 +27,8 @@ from server.library.schemas import (
     SessionGap,
     SessionGroup,
 )
-from server.platform.models import IDENTIFIER_MAX, BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
+from server.platform.limits import IDENTIFIER_MAX
+from server.platform.models import BookmarkRow, Chunk, Gap, SessionRow, SessionTag, SummaryRow
 from server.platform.schema_base import Schema
 from server.platform.searching import fold
 from server.platform.store import Reader

@@ -15,8 +15,6 @@ SHOWN_MAX = 2000
 
 NOTE_MAX = 10_000
 """Characters of a note."""
-NOTES_MAX = 1_000_000
-"""Characters of all notes at the bookmarks of a session: an answer has all of them."""
 
 ARCHIVED_MAX = 1000
 """Sessions that a lab looks at, or reports, at once."""

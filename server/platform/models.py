@@ -5,8 +5,6 @@ from uuid import uuid4
 from sqlalchemy import BigInteger, Integer
 from sqlmodel import Field, Index, SQLModel, UniqueConstraint
 
-IDENTIFIER_MAX = 2**63 - 1
-"""SQLite's largest number."""
 NEVER_AGAIN = {"sqlite_autoincrement": True}
 """A number is never given again: pages, links, caches, exports that wait and the audit log hold on to it."""
 BIG = BigInteger().with_variant(Integer(), "sqlite")

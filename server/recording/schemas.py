@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from server.platform.models import IDENTIFIER_MAX
+from server.platform.limits import IDENTIFIER_MAX
 from server.platform.schema_base import Schema
 
 State = Literal["recording", "complete", "interrupted"]

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from robot_runtime.contract.archive import CHUNKS, SESSION, pack_chunk
-from robot_runtime.contract.chunks import StoredChunk, join_shuffled, unpack, unpack_rows
+from robot_runtime.contract.chunks import LEVEL, StoredChunk, join_shuffled, unpack, unpack_rows
 from server.features.exports.archive_models import ArchivedTopic
 from server.features.exports.archive_reader import Archive, ArchiveError, open_archive
 from server.features.exports.summed_members import SummedMembers
@@ -14,8 +14,6 @@ from server.features.exports.summed_members import SummedMembers
 SECONDS = 60.0
 BYTES_MAX = 4_000_000
 """Of one merged chunk, unpacked."""
-LEVEL = 6
-"""zlib's usual one: half the bytes of the recorder's fastest."""
 
 
 def write_merged(path: Path, merged: Path) -> None:

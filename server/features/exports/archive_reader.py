@@ -38,8 +38,8 @@ from server.features.exports.archive_models import (
     ArchivedGap,
 )
 from server.features.exports.archive_samples import SPAN_MAX, check_chunk, check_document
-from server.library.schemas import NOTES_MAX
 from server.platform.errors import InvalidError
+from server.platform.limits import NOTES_MAX
 from server.recording.schemas import GapKind
 
 SESSION_BYTES_MAX = 32_000_000

@@ -17,7 +17,8 @@ from server.http.pinned_requests import (
     read_document,
     read_piece,
 )
-from server.library.schemas import ARCHIVED_MAX, NOTES_MAX, SHOWN_MAX, SessionEdits
+from server.library.schemas import ARCHIVED_MAX, SHOWN_MAX, SessionEdits
+from server.platform.limits import NOTES_MAX
 from server.platform.paired_robots import PairedRobot
 from server.platform.schema_base import Schema
 

@@ -12,7 +12,7 @@ from server.http.operations import Identifier, Operations
 from server.http.request_body import RequestBody
 from server.http.sign_in.identity import Caller
 from server.http.sign_in.policy import Need
-from server.platform.models import IDENTIFIER_MAX
+from server.platform.limits import IDENTIFIER_MAX
 
 router = Operations(prefix="/api/layouts", tags=["layouts"])
 
