@@ -31,9 +31,9 @@ WAITING := $(addprefix tests/,board/test_bootloader.py packages/test_32_bits.py 
 	server/features/comm_tests/test_reserved_board.py server/features/comm_tests/test_thesis_example.py \
 	$(addprefix browser/,test_accessible.py test_bring_up.py test_compare.py test_firmware_upload.py))
 REAL_TIME = $(filter-out $(WAITING),$(shell grep -rl --include='test_*.py' mark.stack tests | sort))
-# All other tests, each part by a process of its own, the longest first, also those that mostly wait. A part lacks what is
-# a part by itself.
-PARTS := $(addprefix tests/,runtime/experiments proofs server proofs/test_guards.py server/features pages \
+# All other tests, each part by a process of its own, the longest first, also those that mostly wait; those of pages once a
+# robot in real time has little left to do. A part lacks what is a part by itself.
+PARTS := $(addprefix tests/,runtime/experiments proofs server pages proofs/test_guards.py server/features \
 	proofs/test_memory.py server/features/doors) tests $(addprefix tests/,runtime documents server/features/exports \
 	server/features/comparison server/features/identification)
 
