@@ -8,6 +8,7 @@ from robot_runtime.generate import cpp, hardware, json_schema, reference, typesc
 from robot_runtime.generate.craft import craft_page
 from robot_runtime.generate.hull import hull_page
 from robot_runtime.generate.missions import missions_page
+from robot_runtime.generate.mistakes import mistakes_page
 from robot_runtime.generate.trim import trim_page
 
 SOURCES = Path(__file__).resolve().parents[2]
@@ -34,6 +35,7 @@ def main() -> int:
         "docs/reference/events.md": reference.events_page(),
         "docs/reference/faults.md": reference.faults_page(),
         "docs/reference/missions.md": missions_page(),
+        "docs/reference/mistakes.md": mistakes_page(),
         "docs/reference/packets.md": reference.packets_page(),
         "docs/reference/parameters.md": reference.parameters_page(),
         "docs/reference/topics.md": reference.topics_page(),

@@ -3,7 +3,13 @@
 On the robot's own board the last sketch stays; `--restore` uploads the robot's firmware again, and
 `--read-out` reads what is on the board.
 
-On its standard output are JSON objects, one to a line; docs/reference/comm-test.md lists them.
+On its standard output are JSON objects, one to a line, with the word `event`:
+
+- `started`: `test` (its place in the document), `firmware`, `tools`, `host`
+- `phase`: `test`, `number` (of the cell), `phase`, which is `compile`, `upload` or `run`
+- `cell`: `test`, `number`, `values`, the columns of an export
+- `ended`: `test`, `state`, which is `complete`, `failed` or `cancelled`, `problem`
+- `refused`: `problems`, field by field; the exit status is 2
 """
 
 import argparse

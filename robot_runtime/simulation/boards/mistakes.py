@@ -63,43 +63,55 @@ def _are_numbers(least: float, most: float, count: int = 1) -> Callable[[str], b
 
 
 MISTAKES: dict[str, Mistake] = {
-    "motors-swapped": Mistake("FIN,FIN", "each of two motors is at the other's H-bridge", _are_two_fins),
+    "motors-swapped": Mistake("FIN,FIN", "two motors are at each other's H-bridge", _are_two_fins),
     "leads-reversed": Mistake("FIN", "a motor's leads are swapped", _is_fin),
-    "encoders-swapped": Mistake("FIN,FIN", "each of two encoders is at the other's select", _are_two_fins),
+    "encoders-swapped": Mistake("FIN,FIN", "two encoders are at each other's select", _are_two_fins),
     "encoder-reversed": Mistake("FIN", "an encoder counts backwards: its magnet is turned over", _is_fin),
     "strap-wrong": Mistake("FIN", "an H-bridge is at 0x62", _is_fin),
-    "strap-shared": Mistake("FIN,FIN", "the first's H-bridge has the second's address", _are_two_fins),
+    "strap-shared": Mistake(
+        "FIN,FIN", "the first's H-bridge has the second's address, and both obey", _are_two_fins
+    ),
     "imu-strap": Mistake("", "the IMU is at 0x68", _is_nothing),
     "imu-turned": Mistake(
-        "AXES", "the body axes along which the IMU's lie; +x-y-z is upside down", _are_axes
+        "AXES",
+        "the body axes along which the IMU's X, Y and Z lie; +x-y-z is upside down",
+        _are_axes,
     ),
-    "imu-clone": Mistake("IDENTITY", "WHO_AM_I of another chip, 1 to 255", _is_identity),
-    "missing": Mistake("PART", f"not connected; a part is {', '.join(PARTS)}", PARTS.__contains__),
-    "beacons-inverted": Mistake("", "low is heard", _is_nothing),
-    "beacons-swapped": Mistake("", "right is left", _is_nothing),
+    "imu-clone": Mistake("IDENTITY", "the IMU's WHO_AM_I, 1 to 255 or from 0x1", _is_identity),
+    "missing": Mistake("PART", "a part is not connected", PARTS.__contains__),
+    "beacons-inverted": Mistake("", "a detector's pin is low while it hears its tone", _is_nothing),
+    "beacons-swapped": Mistake("", "the right detector is at the left one's pin", _is_nothing),
     "divider-wrong": Mistake(
         "FACTOR", "the battery reads as this many times its voltage, 0.1 to 10", _are_numbers(0.1, 10)
     ),
     "regulator-off": Mistake(
-        "PERCENT", "the converter's 5 V are this much higher, -10 to 10", _are_numbers(-10, 10)
+        "PERCENT",
+        "the 5 V are this much higher, -10 to 10, so that the battery reads lower",
+        _are_numbers(-10, 10),
     ),
-    "gyro-offset": Mistake("X,Y,Z", "°/s of the gyroscope's axes, -20 to 20", _are_numbers(-20, 20, 3)),
+    "gyro-offset": Mistake("X,Y,Z", "°/s of the gyroscope's own axes, -20 to 20", _are_numbers(-20, 20, 3)),
     "gyro-drift": Mistake(
-        "X,Y,Z", "°/s of the gyroscope's axes for each °C above 25, -1 to 1", _are_numbers(-1, 1, 3)
+        "X,Y,Z", "°/s by which the offsets grow with each °C above 25, -1 to 1", _are_numbers(-1, 1, 3)
     ),
-    "encoder-noise": Mistake("TICKS", "of all encoders, to either side, 0 to 20", _are_numbers(0, 20)),
+    "encoder-noise": Mistake(
+        "TICKS", "every encoder is wrong by up to this many of 1024, 0 to 20", _are_numbers(0, 20)
+    ),
     "backlash": Mistake("RAD", "of all fins' gears, 0 to 0.3", _are_numbers(0, 0.3)),
     "stiction": Mistake(
-        "STEPS", "of all fins: below this drive one that rests stays at rest, 0 to 63", _are_numbers(0, 63)
+        "STEPS",
+        "of all fins, 0 to 63, 2 without it: below this drive a fin at rest stays; a shaft's seal adds 3 to 9",
+        _are_numbers(0, 63),
     ),
-    "pack-resistance": Mistake("OHM", "of the battery, 0 to 2", _are_numbers(0, 2)),
+    "pack-resistance": Mistake(
+        "OHM", "of the battery, 0 to 2: its voltage falls with the motors' current", _are_numbers(0, 2)
+    ),
 }
 """By name, wiring first. FIN is one of `FINS`."""
 
 
 def write_list() -> list[str]:
     """Return a line for each kind of mistake: its notation and its meaning."""
-    return [f"{_written(name)}: {mistake.meaning}" for name, mistake in MISTAKES.items()]
+    return [f"{notation(name)}: {mistake.meaning}" for name, mistake in MISTAKES.items()]
 
 
 def check_mistake(text: str) -> None:
@@ -110,9 +122,10 @@ def check_mistake(text: str) -> None:
     mistake = MISTAKES[name]
     if not mistake.accepts(argument) or (colon and not argument):
         fins = f"; FIN is {', '.join(FINS)}" if "FIN" in mistake.argument else ""
-        raise ValueError(f"the mistake {text!r} is written {_written(name)}: {mistake.meaning}{fins}")
+        raise ValueError(f"the mistake {text!r} is written {notation(name)}: {mistake.meaning}{fins}")
 
 
-def _written(name: str) -> str:
+def notation(name: str) -> str:
+    """Return how a mistake is written, such as `leads-reversed:FIN`."""
     argument = MISTAKES[name].argument
     return f"{name}:{argument}" if argument else name
