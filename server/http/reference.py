@@ -1,17 +1,22 @@
 """docs/reference/http.md: every operation of the HTTP interface and its types, from the OpenAPI document.
 
-Types of requests are described field by field; of the types of answers alone it names the fields.
+Types of requests are described field by field; of the types of answers alone it names the fields. Those of
+commands are described in commands.md.
 """
 
 from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
+from robot_runtime.contract.commands import COMMANDS
 from robot_runtime.generate.markdown import fill, page, table
 from server.http.sign_in.policy import DECLARED
 
 Schema = Mapping[str, Any]
 
 SOURCE = "the server's OpenAPI document"
+COMMAND_TYPES = {cls.__name__: name for name, cls in COMMANDS.items()}
+LARGEST = 2.0**63 - 1
+"""The largest identifier of the database, which is no limit to a person."""
 
 
 def http_page(document: Schema) -> str:
@@ -31,7 +36,7 @@ def http_page(document: Schema) -> str:
         types, {name for _, operation in operations for name in _names(operation.get("requestBody"))}
     )
     parts.append("## Types of requests\n")
-    for name in filter(sent.__contains__, types):
+    for name in filter((sent - COMMAND_TYPES.keys()).__contains__, types):
         parts += [f"### {name}\n", _sent(types[name])]
     parts.append(
         "## Types of answers\n\nEach field is named, with its type where that is one of these. "
@@ -120,6 +125,8 @@ def _answered(schema: Schema) -> str:
 
 
 def _link(name: str) -> str:
+    if command := COMMAND_TYPES.get(name):
+        return f"[{name}](commands.md#{command})"
     return f"[{name}](#{name.lower()})"
 
 
@@ -156,6 +163,8 @@ def _describe(schema: Schema) -> str:
 def _limits(schema: Schema) -> str:
     low = schema.get("minimum", schema.get("exclusiveMinimum"))
     high = schema.get("maximum", schema.get("exclusiveMaximum"))
+    if high is not None and high >= LARGEST:
+        high = None
     if low is None or high is None:
         return f"from {low:g}" if low is not None else f"up to {high:g}" if high is not None else ""
     return f"{low:g} to {high:g}"

@@ -1,7 +1,6 @@
-"""The shipped runs: complete, and as docs/use/comm-tests.md describes them."""
+"""The shipped runs are complete."""
 
 import json
-import re
 from typing import Any
 
 import pytest
@@ -9,11 +8,6 @@ import pytest
 from bench.samples import FOLDER, SAMPLES
 from robot_runtime.experiments.comm_test.document import read_document
 from server.features.comm_tests.reference import GridPlace
-from tests.board.rig import ROOT
-
-DOCUMENT = ROOT / "docs/use/comm-tests.md"
-TABLE_6 = re.compile(r"^\| (\d+) \| ([\d.]+) \|(.*)\|$", re.MULTILINE)
-PI_DELAYS = (0.0, 0.5, 1.0)
 
 
 def read(name: str) -> dict[str, Any]:
@@ -47,15 +41,3 @@ def test_over_the_robot_s_link_every_number_arrives_in_every_cell(name: str) -> 
     ends = 2 if name.endswith("both") else 1
     assert {cell["right"] for cell in read(name)["cells"]} == {100 * ends}
     assert {cell["out_of_sequence"] for cell in read(name)["cells"]} == {0}
-
-
-def test_the_table_in_the_docs_equals_the_samples() -> None:
-    thesis, plain = rates("grid-thesis"), rates("grid-plain")
-    printed: dict[GridPlace, tuple[float, float]] = {}
-    for baud, arduino_delay, entries in TABLE_6.findall(DOCUMENT.read_text(encoding="utf-8")):
-        for pi_delay, entry in zip(PI_DELAYS, entries.split("|"), strict=True):
-            _, ours, plainly = map(float, entry.split("/"))
-            printed[int(baud), float(arduino_delay), pi_delay] = ours, plainly
-    assert printed == {
-        position: (round(thesis[position], 2), round(plain[position], 2)) for position in thesis
-    }
