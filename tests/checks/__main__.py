@@ -11,6 +11,7 @@ from tests.checks.names import find_bad_names
 from tests.checks.pictures import find_needless_pictures
 from tests.checks.topics import find_compared_names
 from tests.checks.version import find_other_versions
+from tests.checks.words import find_needless_words
 
 ROOT = Path(__file__).parents[2]
 CHECKS: tuple[Callable[[Path], list[str]], ...] = (
@@ -20,6 +21,7 @@ CHECKS: tuple[Callable[[Path], list[str]], ...] = (
     find_needless_pictures,
     find_other_versions,
     find_compared_names,
+    find_needless_words,
 )
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 BY_HAND_MAX = 35_000
 ALL_MAX = 60_000
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _CODE = re.compile(r"^( *)```.*?^\1```", re.MULTILINE | re.DOTALL)
 _MADE = re.compile(r"^<!-- made by .*?^<!-- end -->", re.MULTILINE | re.DOTALL)
 _WORD = re.compile(r"[^\W_]")
@@ -32,7 +33,7 @@ def count_words(text: str) -> tuple[int, int]:
 
 
 def _count(text: str) -> int:
-    return sum(_WORD.search(part) is not None for part in text.split())
+    return sum(_WORD.search(part) is not None for part in _COMMENT.sub("", text).split())
 
 
 def _pages(root: Path) -> Iterator[Path]:
