@@ -76,7 +76,7 @@ GOALS = {
     "control.crossing_ratio_max": _most(1.2),
     "control.overshoot_max": _most(0.05),
     "control.steady_cm_max": _most(2),
-    # Missed; docs/reference/processes.md has the figures. What remains are some thirty rounds a second from
+    # Missed; docs/run/computers.md has the figures. What remains are some thirty rounds a second from
     # the line to the viewer, each of which costs mostly its waking up. Fewer of them make the controllers
     # swing wider, and by an estimate would miss `latency.sample_to_page_ms_p95`.
     "cpu.robot_stack_percent": _most(2.5, "python"),

@@ -8,7 +8,7 @@ Hydrodynamics and Motion Control, 2011: 6.3 for masses that differ along the axe
 
 v is the velocity in body axes, ω the measured turn rate; M has the craft's mass with added mass, d and D its
 damping. F is the force of the fins: ½ρ·C_T·S·(r_c·θ')² from tip to shaft, and ½ρ·C_N·S·w·|w| against the
-speed w of the blade across the water, θ being the measured angle of a fin (docs/reference/simulation.md).
+speed w of the blade across the water, θ being the measured angle of a fin (`simulation/water/fins.py`).
 Net buoyancy is left out: it hardly moves the hull sideways.
 
 The errors of that are not known, but their sizes are. Each is carried along as the change of the way by one

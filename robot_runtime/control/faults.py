@@ -1,6 +1,6 @@
 """The table of faults: time to detection, action, and the text for the operator.
 
-What the chip does by itself, and how each is tested, is in docs/reference/safety.md.
+What the chip does by itself is in docs/reference/safety.md.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
 """A model of heave motion driven by four fins, which `Predictive` uses for its predictions.
 
 Depth z (m) and its speed v (m/s) count downwards; forces are accelerations of the hull with its added mass.
-The numbers are those of the simulated robot (docs/reference/simulation.md): the thrust of a flapping fin is
+The numbers are those of the simulated robot (docs/reference/craft.md): the thrust of a flapping fin is
 ∝ 1 - cos A, where A is its amplitude from peak to peak; a fin that turns round pushes like a paddle, as in
 `simulation/water/fins.py`.
 """

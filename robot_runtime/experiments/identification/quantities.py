@@ -2,7 +2,7 @@
 
 Only ratios of forces to masses show in a motion: mass, added mass of heave, thrust and drag may all be larger
 by the same factor, and everything moves alike. So a fit takes the mass and the added mass of heave as they
-are. A mass is weighed; the added mass of heave is that of an ellipsoid (docs/reference/simulation.md).
+are. A mass is weighed; the added mass of heave is estimated (docs/reference/craft.md).
 """
 
 from collections.abc import Sequence
