@@ -99,7 +99,7 @@ MISTAKES: dict[str, Mistake] = {
     "backlash": Mistake("RAD", "of all fins' gears, 0 to 0.3", _are_numbers(0, 0.3)),
     "stiction": Mistake(
         "STEPS",
-        "of all fins, 0 to 63, 2 without it: below this drive a fin at rest stays; a shaft's seal adds 3 to 9",
+        "of all fins, 0 to 63, 2 without it: below this drive a fin at rest stays; a seal adds 3 to 9",
         _are_numbers(0, 63),
     ),
     "pack-resistance": Mistake(
