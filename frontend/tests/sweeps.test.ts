@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { FigureMeaning, SweepDetail, SweepParameter, SweepVariant } from '../src/api';
 import { drawChart, type Drawing } from '../src/pages/scenarios/sweeps/chart';
-import { axesOf, bestVariant, FIGURE, heatMap, ORDER, planeOf, shortNames, withFixed, writeFixed, type Value } from '../src/pages/scenarios/sweeps/plane';
+import { axesOf, bestVariant, FIGURE, heatMap, ORDER, planeOf, shortNames, shownVariant, withFixed, writeFixed, type Value } from '../src/pages/scenarios/sweeps/plane';
 import { shadingOf } from '../src/pages/scenarios/sweeps/shading';
 import { bestWords, meanWords, valuesText, valuesWords, valueText } from '../src/pages/scenarios/sweeps/words';
 
@@ -91,6 +91,16 @@ describe('the heat map', () => {
     expect(bestVariant(VARIANTS, ERROR)?.number).toBe(5);
     expect(bestVariant(VARIANTS, { ...PERIOD, name: 'rmse' })?.number).toBe(1);
     expect(bestVariant([], RMSE)).toBeNull();
+  });
+});
+
+describe('the variant that is shown', () => {
+  const shown = (best: number | null, chosen: number | null) => shownVariant({ ...GRID, best: best === null ? null : ({ variant: best } as SweepDetail['best']) }, chosen)?.number ?? null;
+
+  it('is the best as long as nobody has chosen, and then what was chosen', () => {
+    expect([shown(2, null), shown(5, null)]).toEqual([2, 5]);
+    expect([shown(2, 2), shown(5, 2)]).toEqual([2, 2]);
+    expect([shown(5, 99), shown(null, null)]).toEqual([5, null]);
   });
 });
 

@@ -91,6 +91,11 @@ export function withFixed(variants: readonly SweepVariant[], axes: readonly Axis
   return variants.filter(({ values }) => held.every(([place, value]) => values[place] === value));
 }
 
+/** The variant to show: the chosen one, else the best by now; null where neither is there. */
+export function shownVariant({ variants, best }: Pick<SweepDetail, 'variants' | 'best'>, chosen: number | null): SweepVariant | null {
+  return variants.find(({ number }) => number === chosen) ?? variants.find(({ number }) => number === best?.variant) ?? null;
+}
+
 export const meanOf = (variant: SweepVariant, figure: string): number | null => variant.figures[figure]?.mean ?? null;
 
 /** How good a value is: the less the better; null where no value is better than another. */
