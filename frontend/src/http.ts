@@ -21,6 +21,10 @@ const FORBIDDEN = 403;
 const TOO_MANY = 429;
 /** s; a longer wait than this is left to who uses the page */
 const WAIT = 2;
+/** ms before what changes nothing is asked for once more, each time that no answer came */
+const PAUSES = [500, 2000];
+/** of a refusal that is none: no answer came */
+export const NO_ANSWER = 'silence';
 
 /** what names the live socket of this page as the one that asks; null while there is none */
 let clientKey: string | null = null;
@@ -59,14 +63,14 @@ type Send = (request: Request) => Promise<Response>;
 /**
  * Return what sends a request, each attempt for at most so many ms; null sets no limit. It is sent once more where the
  * server names a short time to wait, since somebody may have mistyped a code here, and where it gets the confirmation
- * that it asks for.
+ * that it asks for. What changes nothing is sent anew where a busy or restarting server gives no answer.
  */
 export function within(timeout: number | null): Send {
   return async (request) => {
-    let response = await attempt(request, timeout);
+    let response = await insist(request, timeout);
     const wait = Number(response.headers.get('Retry-After') ?? Infinity);
     if (response.status === TOO_MANY && wait <= WAIT) {
-      await new Promise((resolve) => setTimeout(resolve, 1000 * wait));
+      await pause(1000 * wait);
       response = await attempt(request, timeout);
     }
     const again = response.status === FORBIDDEN && (await asksConfirmation(response)) && (await confirmed());
@@ -77,6 +81,21 @@ export function within(timeout: number | null): Send {
 /** As `within`, and nothing is sent while commands are refused. */
 export function unlessBarred(timeout: number): Send {
   return (request) => (barred === null ? within(timeout)(request) : Promise.resolve(Response.json({ detail: barred }, { status: FORBIDDEN })));
+}
+
+const pause = (time: number) => new Promise((resolve) => setTimeout(resolve, time));
+
+async function insist(request: Request, timeout: number | null): Promise<Response> {
+  for (const time of request.method === SAFE ? PAUSES : []) {
+    try {
+      return await attempt(request, timeout);
+    } catch (error) {
+      // What takes long would burden a busy server twice.
+      if (timeout !== null && timeout > TIMEOUT && (error as Error).name === 'TimeoutError') throw error;
+      await pause(time);
+    }
+  }
+  return attempt(request, timeout);
 }
 
 /** Send a request as this page, which may have been signed in anew since the last attempt. */
@@ -124,7 +143,7 @@ export async function askFor<T, Value>(
     const { data, error, response } = await call;
     return response.ok ? { value: await take(data as T, response) } : refused(response.status, error);
   } catch {
-    return { problem: failure };
+    return { problem: failure, kind: NO_ANSWER };
   }
 }
 

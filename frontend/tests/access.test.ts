@@ -209,6 +209,19 @@ describe('a reading link', () => {
     expect(access.refusal('startExport')).toMatch(/reading link/);
   });
 
+  it('waits for a server that does not answer yet', async () => {
+    vi.useFakeTimers();
+    answers['GET /api/access/me'] = json(NOBODY);
+    const access = new Access();
+    const opening = access.open(null, 'x', 'token');
+    await vi.advanceTimersByTimeAsync(1000);
+    expect([access.state, access.silent]).toEqual(['unknown', true]);
+    answers['POST /api/access/read'] = json({ ...ME, identity: READER, operators_only: [], ends: 2e9, page_secret: null });
+    await vi.advanceTimersByTimeAsync(3000);
+    await opening;
+    expect([access.state, access.reads]).toEqual(['in', 3]);
+  });
+
   it('is not used by who is signed in', async () => {
     answers['GET /api/access/me'] = json(ME);
     const access = new Access();

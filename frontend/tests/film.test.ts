@@ -1,6 +1,8 @@
-import { describe, expect, it } from 'vitest';
-import { nextPart } from '../src/film/screening';
+import { afterEach, describe, expect, it, vi } from 'vitest';
+import type { Answer, FilmDescription, FilmPart } from '../src/api';
+import { nextPart, Screening } from '../src/film/screening';
 import { filmedMoment, isFilmed } from '../src/film/spans';
+import { NO_ANSWER } from '../src/http';
 
 const WHOLE = [{ start: 1, end: 100 }];
 
@@ -48,6 +50,35 @@ describe('the next part of a film', () => {
 
   it('is none without a film', () => {
     expect(nextPart(0, [], [])).toBeNull();
+  });
+});
+
+describe('a film that stands', () => {
+  afterEach(() => {
+    vi.useRealTimers();
+    vi.unstubAllGlobals();
+  });
+
+  it('asks again for a part that a busy server did not bring, and not for one that it refused', async () => {
+    vi.useFakeTimers();
+    const buffer = Object.assign(new EventTarget(), { updating: false, buffered: { length: 0 }, timestampOffset: 0, appendBuffer: vi.fn() });
+    class Source extends EventTarget {
+      duration = 0;
+      addSourceBuffer = () => buffer;
+      constructor() {
+        super();
+        queueMicrotask(() => this.dispatchEvent(new Event('sourceopen')));
+      }
+    }
+    vi.stubGlobal('MediaSource', Source);
+    vi.stubGlobal('URL', { createObjectURL: () => 'blob:film' });
+    const answers: Answer<FilmPart>[] = [{ problem: 'No answer.', kind: NO_ANSWER }, { problem: 'Removed.', kind: '' }];
+    const ask = vi.fn(() => Promise.resolve(answers.shift() ?? { problem: 'asked too often' }));
+    const said: string[] = [];
+    const video = Object.assign(new EventTarget(), { currentTime: 1 }) as HTMLVideoElement;
+    new Screening(video, { codec: 'avc1', spans: WHOLE } as unknown as FilmDescription, ask, (problem) => said.push(problem));
+    await vi.advanceTimersByTimeAsync(10_000);
+    expect(said).toEqual(['No answer.', 'Removed.']);
   });
 });
 

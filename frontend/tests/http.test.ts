@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { api } from '../src/api';
-import { address, onUnconfirmed, robot, server } from '../src/http';
+import { address, NO_ANSWER, onUnconfirmed, robot, server } from '../src/http';
 
 let sent: { request: Request; body: unknown }[];
 let answers: Response[];
@@ -15,6 +15,7 @@ beforeEach(() => {
 
 afterEach(() => {
   vi.unstubAllGlobals();
+  vi.useRealTimers();
   onUnconfirmed(() => Promise.resolve(false));
 });
 
@@ -41,6 +42,30 @@ describe('a request', () => {
     await api.health();
     await api.backup(() => undefined);
     expect(times.mock.calls).toEqual([[120_000], [120_000], [5000]]);
+  });
+
+  it('is sent anew where no answer comes, unless it changes something', async () => {
+    vi.useFakeTimers();
+    const refuses = vi.fn<typeof fetch>().mockRejectedValue(new TypeError('refused'));
+    vi.stubGlobal('fetch', refuses.mockRejectedValueOnce(new TypeError('refused')).mockRejectedValueOnce(new DOMException('', 'TimeoutError')).mockResolvedValueOnce(Response.json([])));
+    const asked = api.layouts();
+    await vi.advanceTimersByTimeAsync(3000);
+    expect(await asked).toEqual({ value: [] });
+    expect(refuses).toHaveBeenCalledTimes(3);
+
+    const never = api.layouts();
+    await vi.advanceTimersByTimeAsync(3000);
+    expect(await never).toMatchObject({ kind: NO_ANSWER });
+    expect(refuses).toHaveBeenCalledTimes(6);
+    expect(await api.command('acknowledge', {})).not.toBeNull();
+    expect(refuses).toHaveBeenCalledTimes(7);
+  });
+
+  it('does not burden a busy server twice with what takes long', async () => {
+    const late = vi.fn<typeof fetch>().mockRejectedValue(new DOMException('', 'TimeoutError'));
+    vi.stubGlobal('fetch', late);
+    expect(await api.story(3)).toMatchObject({ kind: NO_ANSWER });
+    expect(late).toHaveBeenCalledTimes(1);
   });
 
   it('has its parameters in its address, each tag by itself', async () => {

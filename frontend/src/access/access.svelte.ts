@@ -1,7 +1,7 @@
 import { createContext } from 'svelte';
 import { api, type Identity, type CallerDetails } from '../api';
 import type { operations } from '../generated/api';
-import { onSignedOut, onUnconfirmed } from '../http';
+import { NO_ANSWER, onSignedOut, onUnconfirmed } from '../http';
 import { keepSecret } from '../pageSecret';
 import { access as texts } from '../texts/access';
 import { Confirmation } from './confirmation.svelte';
@@ -11,6 +11,7 @@ export type Operation = keyof operations;
 
 /** ms between two looks while the server does not answer */
 const LOOK_AGAIN = 2000;
+const pause = () => new Promise((resolve) => setTimeout(resolve, LOOK_AGAIN));
 
 /** Identity and rights of this page's user. */
 export class Access {
@@ -48,7 +49,7 @@ export class Access {
   async open(code: string | null, name: string, reading: string | null = null): Promise<void> {
     let me = await this.#ask();
     while (me === null) {
-      await new Promise((resolve) => setTimeout(resolve, LOOK_AGAIN));
+      await pause();
       me = await this.#ask();
     }
     if (reading !== null && me.identity?.session !== null) {
@@ -62,7 +63,13 @@ export class Access {
   }
 
   async #read(token: string): Promise<void> {
-    const answer = await api.openReadingLink(token);
+    let answer = await api.openReadingLink(token);
+    while ('problem' in answer && answer.kind === NO_ANSWER) {
+      this.silent = true;
+      await pause();
+      answer = await api.openReadingLink(token);
+    }
+    this.silent = false;
     if ('problem' in answer) {
       // The link of before, if there was one, is not what somebody wants to read by now.
       this.state = 'out';

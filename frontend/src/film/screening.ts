@@ -1,4 +1,5 @@
 import type { Answer, FilmDescription, FilmPart } from '../api';
+import { NO_ANSWER } from '../http';
 import { film as texts } from '../texts/film';
 import type { Span } from './spans';
 
@@ -10,6 +11,8 @@ const AHEAD = 15;
 const BEHIND = 60;
 /** s by which pictures that follow each other may seem to be apart */
 const NEAR = 0.2;
+/** ms until a part is asked for again that a busy server did not bring */
+const AGAIN = 2000;
 
 /** Which part is to be fetched for a film that stands at `at`, if any, of what is `stored` of its `spans`. */
 export function nextPart(at: number, stored: readonly Span[], spans: readonly Span[]): { start: number; seconds: number } | null {
@@ -103,7 +106,11 @@ export class Screening {
     // Meanwhile it may have been closed, which removes the buffer.
     if (this.#buffer === null) return;
     this.tell('problem' in answer ? answer.problem : '');
-    if ('problem' in answer) return;
+    if ('problem' in answer) {
+      // A film that stands still would not come to ask again by itself.
+      if (answer.kind === NO_ANSWER) setTimeout(this.#sought, AGAIN);
+      return;
+    }
     buffer.timestampOffset = answer.value.start;
     buffer.appendBuffer(answer.value.data);
   }
