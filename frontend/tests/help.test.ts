@@ -1,6 +1,8 @@
 import { expect, test } from 'vitest';
+import type { PageName } from '../src/router.svelte';
 import { helpAddress } from '../src/shell/help';
 import { HelpDrawer } from '../src/shell/help.svelte';
+import { pages } from '../src/texts/pages';
 
 test('a view within a page has a chapter of its own, or that of its page', () => {
   expect(helpAddress('tune', [])).toBe('/help/use/tune/');
@@ -23,4 +25,11 @@ test('a press before the drawer is fetched opens it when it comes; a tab is for 
   await gone;
   expect(missing.toggle('/help/use/tune/', opener)).toBe(false);
   expect(missing.address).toBeNull();
+});
+
+test('each page has a chapter of its own', () => {
+  const names = Object.keys(pages) as PageName[];
+  const chapters = names.filter((name) => name !== 'unknown').map((name) => helpAddress(name, []));
+  expect(new Set(chapters).size).toBe(names.length - 1);
+  expect(chapters).not.toContain(helpAddress('unknown', []));
 });

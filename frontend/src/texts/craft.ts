@@ -2,7 +2,7 @@
 export const craft = {
   choose: 'Sessions',
   about: 'Record the robot while it makes every kind of motion. Choose sessions to fit, and one that checks the result.',
-  none: { title: 'No session yet', text: 'Record two dives with every kind of motion, or run the scenario Sea trial twice.' },
+  none: { title: 'No session yet', text: 'Record two dives with every kind of motion, or run the scenario Sea trial twice.', toScenarios: 'Open Scenarios' },
   session: 'Session',
   fit: 'Fit',
   check: 'Check',

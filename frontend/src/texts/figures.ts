@@ -36,8 +36,8 @@ export const figures = {
   least: 'Least',
   greatest: 'Greatest',
   segmentOf: (name: string, segment: number) => `${name}, segment ${segment}`,
-  none: { title: 'No values', text: 'No session that matches has this figure. A session that is never armed has none.' },
-  empty: { title: 'No sessions yet', text: 'The figures of the archive appear here.' },
+  none: { title: 'No values', text: 'No session that matches has this figure. A session that is never armed has none.', showAll: 'Show all' },
+  empty: { title: 'No sessions yet', text: 'The figures of the archive appear here.', toRobots: 'Open Robots' },
   groupLabel: (name: string, count: number, median: string) => `${name}: ${count} values, median ${median}`,
   courseLabel: (periods: number) => `Median and middle half of ${periods} periods`,
 } as const;

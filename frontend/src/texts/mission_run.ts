@@ -3,7 +3,7 @@
 export const missionRun = {
   title: 'Mission',
   about: 'The steps of the running mission',
-  none: { title: 'No mission', text: 'The steps of a mission appear here while it runs.' },
+  none: { title: 'No mission', text: 'The steps of a mission appear here while it runs.', choose: 'Choose a mission' },
   phases: {
     running: 'Running',
     paused: 'Paused',

@@ -19,8 +19,9 @@ export const sessions = {
   },
   none: {
     title: 'No sessions yet',
-    text: 'Recorded sessions are listed here. You can search, tag, replay, compare and export them.',
+    text: 'Recorded sessions are listed here. You can search, tag, replay, compare and export them. Arming the robot records one by itself.',
     recordFirst: 'Record the first session',
+    toOperate: 'Open Operate',
     lab: 'Add a robot under System: its sessions come here by themselves. Or import an archive.',
   },
   album: {
