@@ -5,6 +5,7 @@ from mucat.lab import Lab as Lab
 from mucat.live import LiveSample as LiveSample
 from mucat.robot import Robot as Robot
 from mucat.robot import RobotControl
+from mucat.robot import SessionRecording as SessionRecording
 from mucat.sessions import FolderSessions as FolderSessions
 from mucat.sessions import Sessions as Sessions
 from mucat.tables import SessionTables as SessionTables

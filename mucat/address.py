@@ -46,7 +46,7 @@ class RobotAddress:
             with urlopen(request, timeout=SECONDS) as answer:
                 content: bytes = answer.read()
         except HTTPError as problem:
-            raise RobotError(_reason(problem)) from problem
+            raise RobotError(_reason(problem), problem.code) from problem
         except (URLError, OSError) as problem:
             raise RobotError(f"{self.url} does not answer: {problem}.") from problem
         return content

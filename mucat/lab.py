@@ -8,7 +8,7 @@ from typing import Any
 
 from mucat.address import RobotAddress
 from mucat.errors import RobotError
-from mucat.tables import typed_column
+from mucat.tables import load_package, typed_column
 
 POLL_SECONDS = 0.5
 DONE = ("complete", "cancelled", "failed", "interrupted")
@@ -49,10 +49,7 @@ class Lab:
 
     def table(self, sweep: int) -> Any:
         """Return the runs of a sweep that are done as a pandas DataFrame, with the units in its `attrs`."""
-        try:
-            import pandas
-        except ImportError as problem:
-            raise RobotError("A table needs the package pandas: pip install pandas") from problem
+        pandas = load_package("pandas")
         text = self._address.fetch("GET", f"/sweeps/{sweep}/table").decode()
         head, *rows = csv.reader(io.StringIO(text))
         columns = zip(*rows, strict=True) if rows else [()] * len(head)

@@ -1,5 +1,6 @@
 """Samples of a running robot as they come, by its live socket."""
 
+import asyncio
 import json
 from collections.abc import AsyncIterator, Generator, Iterator, Mapping
 from contextlib import contextmanager
@@ -12,10 +13,10 @@ from websockets.sync.client import ClientConnection, connect
 
 from mucat.address import RobotAddress
 from mucat.errors import RobotError
-from robot_runtime.contract.packets import DEFINITIONS_HASH
-from robot_runtime.contract.packets.layout import Record
-from robot_runtime.contract.topics import BY_NAME, TIME, Kind
-from robot_runtime.transport.blocks import read_blocks, read_rows
+from mucat.pictures import decode_picture
+from mucat.topics import RobotTopics, TopicDescription, ask_topics
+from robot_runtime.contract.topics import TIME
+from robot_runtime.transport.blocks import HEADER
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,53 +34,60 @@ class LiveSample:
         """Return a field's value."""
         return self.fields[name]
 
+    def picture(self) -> Any:
+        """Return its picture as an array, height × width × 3: red, green, blue. Raise RobotError."""
+        return decode_picture(self.fields["jpeg"])
+
 
 class LiveReader:
-    """Reader of the samples of some topics in the socket's messages; `after` leaves out older ones."""
+    """Reader of the samples of some topics in the socket's messages; older ones are left out.
 
-    def __init__(self, topics: tuple[str, ...]) -> None:
-        unknown = [name for name in topics if name not in BY_NAME]
-        if unknown or not topics:
+    Topics of which it knows nothing are passed over.
+    """
+
+    def __init__(self, names: tuple[str, ...], topics: RobotTopics) -> None:
+        unknown = [name for name in names if name not in topics.by_name]
+        if unknown or not names:
             raise RobotError(
-                f"There is no topic {', '.join(unknown) or 'named'}; there are {', '.join(BY_NAME)}."
+                f"There is no topic {', '.join(unknown) or 'named'}; there are {', '.join(topics.by_name)}."
             )
-        self._topics = frozenset(topics)
+        self._names = frozenset(names)
+        self._topics = topics
+        self._by_number = {topics.by_name[name].number: topics.by_name[name] for name in names}
         self._after = float("-inf")
 
     @property
     def pictures(self) -> list[str]:
         """The reader's topics of pictures."""
-        return sorted(name for name in self._topics if BY_NAME[name].kind is Kind.PICTURE)
+        return sorted(topic.name for topic in self._by_number.values() if topic.kind == "picture")
 
-    def greet(self, message: str | bytes) -> dict[str, Any]:
-        """Read the server's first message. Raise RobotError where its definitions differ."""
+    def greet(self, message: str | bytes) -> None:
+        """Read the server's first message. Raise RobotError where its samples cannot be read."""
         hello: dict[str, Any] = json.loads(message)
-        if hello["definitions"] != f"{DEFINITIONS_HASH:08x}":
-            raise RobotError("The robot runs another version of µ-CAT. Install the same version here.")
+        self._topics.check(hello["definitions"], self._names)
         self._after = hello["steady"]
-        return hello
 
     def read(self, message: str | bytes) -> list[LiveSample]:
         """Return the samples of these topics in a message."""
-        if isinstance(message, str):
-            return []
         samples: list[LiveSample] = []
-        for block in read_blocks(message):
-            name = block.topic.name
-            if name not in self._topics:
-                continue
-            if block.topic.kind is Kind.ROWS:
-                samples += [LiveSample(name, time, _values(record)) for time, record in read_rows(block)]
-            elif block.topic.kind is Kind.DOCUMENTS:
-                samples += [
-                    LiveSample(name, document["time"], document) for document in json.loads(block.payload)
-                ]
-            else:
-                time = TIME.unpack_from(block.payload)[0]
-                samples.append(LiveSample(name, time, {"jpeg": block.payload[TIME.size :]}))
-        return [
-            sample for sample in samples if sample.time >= self._after or BY_NAME[sample.topic].newest_only
-        ]
+        if isinstance(message, bytes):
+            at = 0
+            while at < len(message):
+                number, _, _, _, size = HEADER.unpack_from(message, at)
+                start, at = at + HEADER.size, at + HEADER.size + size
+                if (topic := self._by_number.get(number)) is not None:
+                    samples += self._read_block(topic, message[start:at])
+        return samples
+
+    def _read_block(self, topic: TopicDescription, payload: bytes) -> list[LiveSample]:
+        if topic.kind == "rows":
+            read = [LiveSample(topic.name, time, fields) for time, fields in topic.read_rows(payload)]
+        elif topic.kind == "documents":
+            read = [LiveSample(topic.name, document["time"], document) for document in json.loads(payload)]
+        else:
+            time = TIME.unpack_from(payload)[0]
+            read = [LiveSample(topic.name, time, {"jpeg": payload[TIME.size :]})]
+        return [sample for sample in read if topic.newest_only or sample.time >= self._after]
 
 
 @contextmanager
@@ -98,7 +106,7 @@ def open_live(address: RobotAddress) -> Iterator[ClientConnection]:
 
 def read_live(address: RobotAddress, topics: tuple[str, ...]) -> Generator[LiveSample, None, None]:
     """Yield samples from now on, until the caller breaks off. Raise RobotError where the connection ends."""
-    reader = LiveReader(topics)
+    reader = LiveReader(topics, ask_topics(address))
     with open_live(address) as socket:
         reader.greet(socket.recv())
         socket.send(json.dumps({"op": "watch", "pictures": reader.pictures}))
@@ -108,7 +116,7 @@ def read_live(address: RobotAddress, topics: tuple[str, ...]) -> Generator[LiveS
 
 async def read_live_async(address: RobotAddress, topics: tuple[str, ...]) -> AsyncIterator[LiveSample]:
     """Yield samples as `read_live`, for asyncio."""
-    reader = LiveReader(topics)
+    reader = LiveReader(topics, await asyncio.to_thread(ask_topics, address))
     try:
         async with connect_async(
             address.live, additional_headers=address.headers, compression=None, max_size=None
@@ -122,10 +130,6 @@ async def read_live_async(address: RobotAddress, topics: tuple[str, ...]) -> Asy
         raise RobotError(f"{address.url} does not let this program in: {problem}.") from problem
     except ConnectionClosed as problem:
         raise RobotError(_ended(problem)) from problem
-
-
-def _values(record: Record) -> dict[str, Any]:
-    return {name: getattr(record, name) for name in record.wires}
 
 
 def _ended(problem: ConnectionClosed) -> str:

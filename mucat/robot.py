@@ -3,8 +3,8 @@
 import json
 import threading
 import time
-from collections.abc import AsyncIterator, Generator, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import AsyncIterator, Generator, Iterator, Mapping
+from contextlib import closing, contextmanager, suppress
 from typing import Any, Literal
 from urllib.parse import quote
 
@@ -13,8 +13,7 @@ from websockets.sync.client import ClientConnection
 
 from mucat.address import RobotAddress
 from mucat.errors import RobotError
-from mucat.live import LiveReader, LiveSample, open_live, read_live, read_live_async
-from robot_runtime.contract.topics import STATE
+from mucat.live import LiveSample, open_live, read_live, read_live_async
 
 DRIVE_SECONDS = 0.05
 """Between two commands of the sticks, each of which counts for 0.2 s."""
@@ -41,6 +40,25 @@ class Robot:
         """Stop the robot: disarm at once. This needs no control."""
         self.address.ask("POST", "/robot/stop")
 
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """Return the parameters by name, each with its `value`, range, unit and meaning."""
+        listed = self.address.ask("GET", "/parameters")["parameters"]
+        return {parameter["name"]: parameter for parameter in listed}
+
+    def picture(self, topic: str = "picture") -> Any:
+        """Return the next picture of a topic as an array, height × width × 3: red, green, blue."""
+        with closing(self.live(topic)) as samples:
+            return next(samples).picture()
+
+    @contextmanager
+    def record(self, name: str = "", note: str = "") -> Iterator["SessionRecording"]:
+        """Record a session, which the block's end stops; its default name is its date and time."""
+        session = int(self.address.ask("POST", "/sessions", {"name": name, "note": note})["id"])
+        try:
+            yield SessionRecording(self.address, session)
+        finally:
+            self.address.ask("POST", f"/sessions/{session}/stop")
+
     def live(self, *topics: str) -> Generator[LiveSample, None, None]:
         """Return the samples of these topics from now on, as they come."""
         return read_live(self.address, topics)
@@ -53,7 +71,7 @@ class Robot:
     def control(self, *, over: bool = False) -> Iterator["RobotControl"]:
         """Take control, with `over` also from somebody else; the block's end stops and releases the robot."""
         with open_live(self.address) as socket:
-            hello = LiveReader((STATE.name,)).greet(socket.recv())
+            hello: dict[str, Any] = json.loads(socket.recv())
             steady = hello["steady"] - time.monotonic()
             reader = threading.Thread(target=_read_all, args=(socket,), daemon=True)
             reader.start()
@@ -96,6 +114,18 @@ class Robot:
         return outcomes
 
 
+class SessionRecording:
+    """A session that records, within the block of `Robot.record`; `session` is its number."""
+
+    def __init__(self, address: RobotAddress, session: int) -> None:
+        self._address = address
+        self.session = session
+
+    def mark(self, text: str = "") -> None:
+        """Bookmark this moment, with a note in Markdown if one is given. Raise RobotError."""
+        self._address.ask("POST", f"/sessions/{self.session}/markers", {"time": None, "text": text})
+
+
 class RobotControl:
     """The control of a robot within the block of `Robot.control`."""
 
@@ -112,6 +142,10 @@ class RobotControl:
     def command(self, name: str, /, **fields: Any) -> Any:
         """Send a command of docs/reference/commands.md with its fields. Raise RobotError."""
         return self._address.ask("POST", f"/robot/commands/{quote(name, safe='')}", fields, self._key)
+
+    def set_parameters(self, values: Mapping[str, Any]) -> None:
+        """Set parameters by name, all or none, between two control ticks. Raise RobotError."""
+        self.command("parameters", values=dict(values))
 
     def arm(self, mode: Literal["automatic", "manual"] = "automatic", unwatched: float | None = None) -> None:
         """Arm the robot. Raise RobotError with all reasons against it.

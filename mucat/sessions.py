@@ -12,6 +12,7 @@ from mucat.address import RobotAddress
 from mucat.csv_export import read_csv_export
 from mucat.errors import RobotError
 from mucat.mcap_export import MAGIC, read_mcap
+from mucat.pictures import decode_picture
 from mucat.recorded import list_folder, read_archive, read_folder
 from mucat.tables import SessionTables
 from robot_runtime.contract.archive import FORMAT
@@ -20,6 +21,7 @@ from robot_runtime.zip_members import find_members
 POLL_SECONDS = 0.2
 PAGE = 500
 """Sessions in one answer of the server, at most."""
+Entries = list[dict[str, Any]]
 
 
 class Sessions:
@@ -62,6 +64,42 @@ class Sessions:
         asked = {"sessions": [*sessions], "signals": [*signals]}
         comparison: dict[str, Any] = self._address.ask("POST", "/compare", asked)
         return comparison
+
+    def events(self, session: int) -> Entries:
+        """Return the events of a session in order of time: `time` (s), `kind`, `severity`, `text`."""
+        return [*self._timeline(session)["events"]]
+
+    def marks(self, session: int) -> Entries:
+        """Return the bookmarks of a session in order of time: `id`, `time` (s), `text`."""
+        return [*self._timeline(session)["markers"]]
+
+    def mark(self, session: int, time: float, text: str = "") -> None:
+        """Bookmark a moment (s since the session's start), with a note in Markdown if one is given."""
+        self._address.ask("POST", f"/sessions/{session}/markers", {"time": time, "text": text})
+
+    def figures(
+        self, session: int, start: float | None = None, end: float | None = None
+    ) -> "dict[str, float | None]":
+        """Return the figures of a session's armed time, or from `start` to `end` (s), in SI units by name.
+
+        A figure is None where it is not one number, as the overshoot of several steps.
+        """
+        part = {name: value for name, value in (("from", start), ("to", end)) if value is not None}
+        query = f"?{urlencode(part)}" if part else ""
+        figures = self._address.ask("GET", f"/sessions/{session}/story/figures{query}")["whole"]
+        return {name: figure["value"] for name, figure in figures.items()}
+
+    def picture(self, session: int, time: float) -> Any:
+        """Return the first small camera picture from this time (s) on, as `Robot.picture` does."""
+        return decode_picture(self._address.fetch("GET", f"/sessions/{session}/thumbnail?time={time!r}"))
+
+    def snapshot(self, session: int, time: float) -> Any:
+        """Return the first snapshot from this time (s) on, at full size."""
+        return decode_picture(self._address.fetch("GET", f"/sessions/{session}/snapshot?time={time!r}"))
+
+    def _timeline(self, session: int) -> "dict[str, Any]":
+        timeline: dict[str, Any] = self._address.ask("GET", f"/sessions/{session}/timeline")
+        return timeline
 
     @staticmethod
     def read(file: Path | str) -> SessionTables:

@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from importlib import import_module
 from typing import Any, NamedTuple
 
 from mucat.errors import RobotError
@@ -37,10 +38,13 @@ class SessionTables:
         """Return the units of a topic's columns; those without one are left out. Raise RobotError."""
         return dict(self._table(topic).units)
 
+    def columns(self, topic: str) -> dict[str, Sequence[Any]]:
+        """Return a topic's columns by name, each a sequence of numbers or texts. Raise RobotError."""
+        return dict(self._table(topic).columns)
+
     def pandas(self, topic: str) -> Any:
         """Return a topic as a pandas DataFrame, with the units in its `attrs`. Raise RobotError."""
-        import pandas
-
+        pandas = load_package("pandas")
         table = self._table(topic)
         frame = pandas.DataFrame(table.columns)
         frame.attrs["units"] = dict(table.units)
@@ -48,14 +52,20 @@ class SessionTables:
 
     def polars(self, topic: str) -> Any:
         """Return a topic as a polars DataFrame; `units` returns the units. Raise RobotError."""
-        import polars
-
-        return polars.DataFrame(dict(self._table(topic).columns))
+        return load_package("polars").DataFrame(dict(self._table(topic).columns))
 
     def _table(self, topic: str) -> TopicTable:
         if topic not in self._readers:
             raise RobotError(f"The session has no topic {topic}; it has {', '.join(self._readers)}.")
         return self._readers[topic]()
+
+
+def load_package(name: str) -> Any:
+    """Return a package that not everybody has. Raise RobotError where it is not installed."""
+    try:
+        return import_module(name)
+    except ImportError as problem:
+        raise RobotError(f"A table needs the package {name}: pip install {name}") from problem
 
 
 def si_column(name: str, unit: str, values: Sequence[Any]) -> tuple[str, str, Sequence[Any]]:

@@ -9,7 +9,7 @@ from packaging.requirements import Requirement
 from packages.commands import run
 from robot_runtime.places import PACKAGES
 
-EXTRAS = ("pi", "film", "scene", "mqtt", "parquet", "identify", "lab", "ros2")
+EXTRAS = ("pi", "film", "scene", "mqtt", "parquet", "identify", "lab", "ros2", "gym")
 DEBIAN = PACKAGES / "packages/debian-13.txt"
 """Versions that fit the packages of a 32-bit Debian 13, for which pip finds no wheels."""
 FROM_APT = ("numpy", "opencv-python-headless", "pydantic", "pydantic-core")

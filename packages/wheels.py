@@ -2,6 +2,7 @@
 
 `mucat` is the same for every computer; `mucat-emulator` has programs, so that each architecture has its own.
 Both put their files into the folder `mucat_build`, where the software finds them (robot_runtime/places.py).
+`mucat-client` has those files of `mucat` that a program on another computer needs, and replaces it there.
 """
 
 import argparse
@@ -26,6 +27,16 @@ BAUDS = (250_000, 115_200)
 """bit/s for which firmware is packaged: the default, and one that every serial port can make."""
 PYTHON_PACKAGES = ("mucat", "robot_runtime", "server", "migrations")
 FILES = ("pyproject.toml", "README.md", "LICENSE", "firmware/emulator/LICENSE")
+CLIENT_FILES = (
+    "mucat",
+    "robot_runtime/__init__.py",
+    "robot_runtime/py.typed",
+    "robot_runtime/contract",
+    "robot_runtime/transport/__init__.py",
+    "robot_runtime/transport/blocks.py",
+    "robot_runtime/zip_members.py",
+)
+"""The package `mucat` without its environments, and what it imports."""
 DIST = PACKAGES / "dist"
 STAGES = BUILD / "wheels"
 """Copies of what goes into each wheel."""
@@ -35,7 +46,7 @@ GLIBC_MIN = (2, 17)
 
 
 def main() -> int:
-    """Build the wheel `mucat`, and `mucat-emulator` for this computer or the architectures named."""
+    """Build `mucat`, `mucat-client`, and `mucat-emulator` for this computer or the architectures named."""
     parser = argparse.ArgumentParser(prog="python -m packages.wheels", description=__doc__)
     parser.add_argument("architectures", nargs="*", metavar="ARCHITECTURE", help=", ".join(ARCHITECTURES))
     names = parser.parse_args().architectures or [platform.machine()]
@@ -45,7 +56,7 @@ def main() -> int:
             raise PackagingError(
                 f"There is no emulator for {unknown[0]}; there is for {', '.join(ARCHITECTURES)}."
             )
-        print(build_mucat(DIST))
+        print(build_mucat(DIST), build_client(DIST), sep="\n")
         for name in names:
             print(build_emulator(ARCHITECTURES[name], DIST))
         print(*write_constraints(DIST), sep="\n")
@@ -95,6 +106,23 @@ def _copy_firmware(parts: Path, baud: int, *, hil: bool) -> None:
     shutil.copy(program.with_suffix(".hex"), goal.parent)
     if not hil:
         shutil.copy(program.with_name("bring_up.hex"), goal.parent)
+
+
+def build_client(dist: Path) -> Path:
+    """Build the wheel for programs on other computers, into `dist`. Return its path. Raise PackagingError."""
+    with _stage("mucat-client") as stage:
+        for name in CLIENT_FILES:
+            source, goal = PACKAGES / name, stage / name
+            goal.parent.mkdir(parents=True, exist_ok=True)
+            if source.is_dir():
+                shutil.copytree(source, goal, ignore=shutil.ignore_patterns("__pycache__", "gym"))
+            else:
+                shutil.copy(source, goal)
+        for file in (PACKAGES / "packages/client").iterdir():
+            shutil.copy(file, stage)
+        shutil.copy(PACKAGES / "LICENSE", stage)
+        (stage / "VERSION").write_text(VERSION)
+        return _build(stage, dist)
 
 
 def build_emulator(architecture: Architecture, dist: Path) -> Path:

@@ -254,7 +254,23 @@ def decode_pictures(data: bytes) -> Iterator[tuple[float, bytes]]:
 
 def describe_topics() -> dict[str, Any]:
     """Return a description of the recorded topics, for a reader with only the database."""
-    return {topic.name: _describe(topic) for topic in RECORDED}
+    return {topic.name: describe_topic(topic) for topic in RECORDED}
+
+
+def describe_topic(topic: AnyTopic) -> dict[str, Any]:
+    """Return the description of a topic: its meaning, its kind and its fields, of rows also their bytes."""
+    described: dict[str, Any] = {"meaning": topic.meaning, "kind": topic.kind.name.lower()}
+    if topic.kind in (Kind.PICTURE, Kind.FILM):
+        described["fields"] = []
+    elif issubclass(topic.record, Record):
+        described["row_bytes"] = topic.row_bytes
+        described["fields"] = [
+            asdict(RowField(name, wire.code, wire.count, wire.scale, wire.unit, wire.meaning))
+            for name, wire in topic.record.wires.items()
+        ]
+    else:
+        described["fields"] = [{"name": field.name} for field in fields(topic.record)]
+    return described
 
 
 def row_fields(topic: Mapping[str, Any]) -> list[RowField]:
@@ -291,18 +307,3 @@ def row_layout(topic: Mapping[str, Any]) -> RowLayout:
         names=tuple(name for field in row_fields(topic) for name in field.columns),
         units=tuple(field.unit for field in each),
     )
-
-
-def _describe(topic: AnyTopic) -> dict[str, Any]:
-    described: dict[str, Any] = {"meaning": topic.meaning, "kind": topic.kind.name.lower()}
-    if topic.kind in (Kind.PICTURE, Kind.FILM):
-        described["fields"] = []
-    elif issubclass(topic.record, Record):
-        described["row_bytes"] = topic.row_bytes
-        described["fields"] = [
-            asdict(RowField(name, wire.code, wire.count, wire.scale, wire.unit, wire.meaning))
-            for name, wire in topic.record.wires.items()
-        ]
-    else:
-        described["fields"] = [{"name": field.name} for field in fields(topic.record)]
-    return described

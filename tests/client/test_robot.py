@@ -5,7 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from mucat import Control, FolderSessions, Robot, RobotError, Sessions, SessionTables
+from mucat import (
+    Control,
+    FolderSessions,
+    Robot,
+    RobotError,
+    SessionRecording,
+    Sessions,
+    SessionTables,
+)
 from tests.server.waiting import until
 from tests.stack import Stack
 
@@ -159,7 +167,7 @@ def test_what_is_no_export_is_refused(tmp_path: Path) -> None:
         Robot("http://127.0.0.1:9", "mucat_token").state()
 
 
-@pytest.mark.parametrize("kind", [Robot, Control, Sessions, FolderSessions, SessionTables])
+@pytest.mark.parametrize("kind", [Robot, SessionRecording, Control, Sessions, FolderSessions, SessionTables])
 def test_the_reference_has_every_method(kind: type) -> None:
     page = (Path(__file__).parents[2] / "docs/reference/python.md").read_text()
     methods = [name for name in vars(kind) if not name.startswith("_") and callable(getattr(kind, name))]

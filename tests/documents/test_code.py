@@ -62,6 +62,8 @@ UNRUN = {
     ("run/sd-card.md", "sudo mucat doctor"): "an installed robot",
     ("run/sd-card.md", "sudo mucat record start pool"): "an installed robot",
     ("run/troubleshoot.md", "systemctl --no-pager --lines 5 status mucat-runtime mucat"): "systemd",
+    ("run/packages.md", "pip install ./mucat_client-*.whl"): "tests/packages/test_client.py installs it",
+    ("use/learn.md", "pip install mucat[gym]"): "the internet",
     ("use/sweeps.md", "from mucat import Lab"): "the notebook sweep does the same",
     ("use/sweeps.md", DASK): "tests/server/features/sweeps/test_cluster.py does the same",
     ("use/notebooks/index.md", "pip install jupyterlab matplotlib pandas"): "Jupyter and the internet",
@@ -113,7 +115,7 @@ def is_run(page: str, block: CodeBlock) -> bool:
     if page.startswith("develop/add-a-") and (block.title or block.language == "sh"):
         return True
     if block.language in PYTHON:
-        return page in ON_A_SERVER or page == "use/export.md"
+        return page in ON_A_SERVER or page in ("use/export.md", "use/learn.md")
     return block.language == "sh" and page in test_commands.RUN
 
 

@@ -17,7 +17,7 @@ import matplotlib
 import pandas
 
 FOLDER = Path(__file__).parents[2] / "docs" / "use" / "notebooks"
-NAMES = ("dive", "tune", "crafts", "sweep")
+NAMES = ("dive", "tune", "crafts", "sweep", "learn")
 SVG: dict[Any, Any] = {
     "svg.hashsalt": "mucat",
     "svg.fonttype": "path",

@@ -11,7 +11,7 @@ from tests.documents.blocks import DOCS
 DECLARED = tomllib.loads((PACKAGES / "pyproject.toml").read_text())["project"]["optional-dependencies"]
 CHOSEN = DECLARED.keys() - {"emulator"}
 """The extras that a person adds; the emulator's wheel is named beside that of mucat."""
-LEFT_OUT = {"scene", "lab"}
+LEFT_OUT = {"scene", "lab", "gym"}
 """The extras that no release brings."""
 
 

@@ -20,7 +20,7 @@ from robot_runtime.contract.documents import Mission
 from robot_runtime.contract.topics import MISSION
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.boards import boards
-from robot_runtime.experiments.scenario.run import PRELUDE, _RunLoop
+from robot_runtime.experiments.scenario.run import PRELUDE, RunLoop
 from robot_runtime.experiments.scenario.simulated_robot import SimulatedRobot
 from robot_runtime.simulation.boards.emulator_process import Water
 from robot_runtime.simulation.boards.stepped_board import PERIOD, SteppedBoard
@@ -136,7 +136,7 @@ class MissionSwim(Flight):
         self.supervisor = self.robot.supervisor
         self.robot.link.attach(stage.board.write)
         self.robot.bus.on_document(MISSION, self._see_mission)
-        self._performance = _RunLoop(stage, Output(), lambda: False)
+        self._performance = RunLoop(stage, Output(), lambda: False)
 
     def _see_mission(self, document: object) -> None:
         assert isinstance(document, Mission)

@@ -132,6 +132,7 @@ ROUTES: dict[tuple[str, str], Least] = {
     ("PUT", "/api/scene/view"): "operator",
     ("GET", "/api/link/frames"): "viewer",
     ("GET", "/api/past"): "viewer",
+    ("GET", "/api/topics"): "viewer",
     ("GET", "/api/storage"): "viewer",
     ("GET", "/api/backup"): "administer",
     ("GET", "/api/sessions"): "viewer",

@@ -460,6 +460,9 @@ export interface paths {
     "/api/tags": {
         get: operations["listTags"];
     };
+    "/api/topics": {
+        get: operations["listTopics"];
+    };
     "/api/tuning/prediction": {
         post: operations["predictStep"];
     };
@@ -1746,6 +1749,36 @@ export interface components {
             frames: components["schemas"]["Dissection"][];
             /** @description now, s, steady clock */
             time: number;
+        };
+        /** @description A topic of the live socket. */
+        LiveTopic: {
+            /** @description in their order; after the time, 8 bytes, in a row */
+            fields: components["schemas"]["LiveTopicField"][];
+            /** @description its number in the header of a block */
+            id: number;
+            /** @enum {string} */
+            kind: "rows" | "documents" | "picture";
+            meaning: string;
+            name: string;
+            /** @description whether each document states everything */
+            newest_only: boolean;
+        };
+        /** @description A field of a topic: of rows `count` numbers of struct's type `code`, each times `scale` in `unit`. */
+        LiveTopicField: {
+            /**
+             * @description empty in documents, whose fields are JSON
+             * @default
+             */
+            code: string;
+            /** @default 1 */
+            count: number;
+            /** @default  */
+            meaning: string;
+            name: string;
+            /** @default 1 */
+            scale: number;
+            /** @default  */
+            unit: string;
         };
         /** @description A control loop: depth (m), heading, pitch or roll (rad). */
         Loop: {
@@ -3758,6 +3791,8 @@ export type Lines = components['schemas']['Lines'];
 export type LinesQuery = components['schemas']['LinesQuery'];
 export type LinkFault = components['schemas']['LinkFault'];
 export type LinkFrames = components['schemas']['LinkFrames'];
+export type LiveTopic = components['schemas']['LiveTopic'];
+export type LiveTopicField = components['schemas']['LiveTopicField'];
 export type Loop = components['schemas']['Loop'];
 export type LoopCommand = components['schemas']['LoopCommand'];
 export type MadeCode = components['schemas']['MadeCode'];
@@ -6468,6 +6503,17 @@ export interface operations {
             200: {
                 content: {
                     "application/json": string[];
+                };
+            };
+        };
+    };
+    listTopics: {
+        parameters: { query?: never };
+        requestBody?: never;
+        responses: {
+            200: {
+                content: {
+                    "application/json": components["schemas"]["LiveTopic"][];
                 };
             };
         };

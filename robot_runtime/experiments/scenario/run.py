@@ -62,7 +62,7 @@ class ScenarioRun:
         self._scenario = scenario
         self._make_board = make_board
         self._listener = listener
-        self._run_loop: _RunLoop | None = None
+        self._run_loop: RunLoop | None = None
         self._cancelled = False
 
     def cancel(self) -> None:
@@ -75,7 +75,7 @@ class ScenarioRun:
         Raise BoardError where there is no board, or it goes away.
         """
         with ScenarioRig(self._scenario, self._make_board, self._send, PRELUDE, self._craft) as rig:
-            run_loop = _RunLoop(rig, self._listener, lambda: self._cancelled)
+            run_loop = RunLoop(rig, self._listener, lambda: self._cancelled)
             run_loop.wait_for_start()
             self._listener.event("started", time=0.0, **describe(rig.board.firmware))
             self._run_loop = run_loop
@@ -87,7 +87,7 @@ class ScenarioRun:
             self._listener.blocks(data)
 
 
-class _RunLoop:
+class RunLoop:
     """The loop that advances the rig from the prelude on; `stopped` returns True to end early."""
 
     def __init__(self, rig: ScenarioRig, listener: RunListener, stopped: Callable[[], bool]) -> None:
@@ -110,7 +110,7 @@ class _RunLoop:
 
     def wait_for_start(self) -> None:
         """Run the prelude."""
-        self._until(0.0)
+        self.advance(0.0)
         robot = self._rig.robot
         robot.outbox.flush()
         robot.announce()
@@ -122,11 +122,11 @@ class _RunLoop:
         """Run all events, until the end or until it is stopped."""
         scenario = self._rig.scenario
         for event in scenario.events:
-            self._until(event.at)
+            self.advance(event.at)
             if self._stopped():
                 return
-            self._run_event(event)
-        self._until(scenario.duration)
+            self.run_event(event)
+        self.advance(scenario.duration)
 
     def finish(self, *, cancelled: bool) -> None:
         """Disarm the robot and report how the run ended."""
@@ -134,7 +134,7 @@ class _RunLoop:
         if robot.supervisor.armed:
             robot.supervisor.stop(f"The scenario {'was cancelled' if cancelled else 'ended'}.")
         self._stopped = lambda: False
-        self._until(clock.now() + AFTERWARDS)
+        self.advance(clock.now() + AFTERWARDS)
         self._receive_bytes()
         robot.publish_tick()
         self._listener.event(
@@ -144,8 +144,8 @@ class _RunLoop:
             problem=" ".join(self._remarks) or None,
         )
 
-    def _until(self, end: float) -> None:
-        """Advance the time to `end` (s), or until it is stopped."""
+    def advance(self, end: float) -> None:
+        """Advance the time to `end` (s since the start), or until it is stopped."""
         rig = self._rig
         while (now := rig.clock.now()) < end - SAME_TIME and not self._stopped():
             self._poll_link(now)
@@ -175,7 +175,8 @@ class _RunLoop:
             heard, self._received = self._received, b""
             self._rig.robot.link.receive(heard)
 
-    def _run_event(self, event: TimedEvent) -> None:
+    def run_event(self, event: TimedEvent) -> None:
+        """Make an event happen now; a refusal is a remark, and a bookmark."""
         now = self._rig.clock.now()
         try:
             self._do(event, now)

@@ -23,6 +23,7 @@ EXTRAS = (
     ("identify", "scipy"),
     ("lab", "distributed"),
     ("ros2", "rosbags"),
+    ("gym", "gymnasium"),
 )
 """Extras of mucat, each with the package that shows that a robot has it, or is to have it."""
 WHEELS = "wheels"

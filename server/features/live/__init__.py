@@ -5,5 +5,9 @@ from server.feature import Feature
 FEATURE = Feature(
     name="live",
     place="both",
-    routes=("server.features.live.routes:router", "server.features.live.past_routes:router"),
+    routes=(
+        "server.features.live.routes:router",
+        "server.features.live.past_routes:router",
+        "server.features.live.topic_routes:router",
+    ),
 )

@@ -12,7 +12,7 @@ from robot_runtime.control_step import ControlStep
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
-from robot_runtime.experiments.scenario.run import PRELUDE, _RunLoop
+from robot_runtime.experiments.scenario.run import PRELUDE, RunLoop
 from robot_runtime.link.serial_link import HEARTBEAT_EARLY
 from robot_runtime.periodic_task import SAME_TIME
 from robot_runtime.simulation.water.requests import changes
@@ -24,7 +24,7 @@ PUSH_EVERY = 0.05
 """s between two inputs of the pilot's."""
 
 
-class _StepLoop(_RunLoop):
+class _StepLoop(RunLoop):
     """The loop of a robot that hears its board in step with control."""
 
     def __init__(self, rig: ScenarioRig) -> None:
@@ -71,9 +71,7 @@ class Flight:
         self._sequence = 0
         self._commands = Commands(self.robot).do
         self._water = changes(self.stage.simulator)
-        self._performance = (
-            _StepLoop(self.stage) if in_step else _RunLoop(self.stage, Output(), lambda: False)
-        )
+        self._performance = _StepLoop(self.stage) if in_step else RunLoop(self.stage, Output(), lambda: False)
         self.robot.bus.on_document(EVENT, self._hear)
         self.robot.bus.on_row(
             NAVIGATION, lambda time, record: self.sent.append((time, Navigation.from_bytes(record)))
@@ -99,7 +97,7 @@ class Flight:
                 self.supervisor.detector.see_server(watched=self.watched)
             if self.sticks is not None and self._sequence * PUSH_EVERY <= self.now:
                 self.push(self.sticks)
-            self._performance._until(min(self.now + STEP, end))
+            self._performance.advance(min(self.now + STEP, end))
 
     def until(self, holds: Callable[[], bool], limit: float) -> float:
         """Run until the condition holds; return the s that it took. Fails beyond the limit."""

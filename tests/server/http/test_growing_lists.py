@@ -223,6 +223,8 @@ FIXED = {
     "/api/sweeps/{sweep} limits",
     "/api/sweeps/{sweep} variants figures",
     "/api/sweeps/{sweep}/runs figures",
+    "/api/topics",
+    "/api/topics fields",
     "/api/tuning/runs figures",
     "/api/tuning/runs runs cycle remarks",
     "/api/tuning/runs runs figures",
