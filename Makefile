@@ -42,7 +42,7 @@ IN_LANES = env MAKEFLAGS= $(MAKE) --no-print-directory --keep-going --output-syn
 BESIDE := nice $(SYSTEM_PYTHON) -m tests.beside
 
 .DEFAULT_GOAL := help
-.PHONY: help run test services test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks lab-proof hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
+.PHONY: help run test services debian test-real-time test-waiting test-checks test-page test-rest $(PARTS:%=test-in-%) check check-code bench figures control screenshots fuzz soak samples kills faults robot-faults outages chaos power guards hostile interface attacks lab-proof hours generate firmware wheels all-wheels packages release missions notebooks image image-swims \
 	host-firmware released-session setup setup-test clean
 
 help: ## list the targets
@@ -163,6 +163,9 @@ soak: setup-test ## prove the link at length: corrupted frames by the million, a
 services: setup-test build/.packages-packages ## install, update and roll back on computers with systemd, and cut their power (needs root; one with ONLY=name)
 	@nice $(PYTHON) -m tests.proofs.services $(ONLY)
 
+debian: setup-test build/.packages-packages ## install, update, roll back and purge the Debian package on a computer with systemd (needs root)
+	@nice $(PYTHON) -m tests.proofs.debian
+
 kills: setup ## kill the server a hundred times while it records, and look for holes (KILLS=100)
 	@nice $(PYTHON) -m tests.proofs.kills $(KILLS)
 
@@ -252,9 +255,10 @@ wheels: setup ## build the wheels into dist/, with the emulated board for this c
 all-wheels: build/.packages-packages setup ## the same with the emulated board for every architecture
 	@$(PYTHON) -m packages.wheels x86_64 aarch64 i686
 
-release: setup ## build a signed release for robots into dist/: make release KEY=~/release-key.pem (MACHINE=aarch64 PYTHON_OF=3.13, LAB=1 for a lab)
+release: setup ## build a signed release into dist/: make release KEY=~/release-key.pem (MACHINE=aarch64 PYTHON_OF=3.13, LAB=1 for a lab; as root for this computer the container image, too)
 	@test -n "$(KEY)" || { echo "Name the secret key, which is made where there is none: make release KEY=FILE"; exit 1; }
 	@$(PYTHON) -m packages.release $(KEY) $(addprefix --machine ,$(MACHINE)) $(addprefix --python ,$(PYTHON_OF)) $(if $(LAB),--lab)
+	$(if $(MACHINE)$(LAB),,@test "$$(id -u)" -ne 0 || $(MAKE) --no-print-directory image KEY=$(KEY))
 
 image: setup build/.packages-packages ## build the container image of the emulated robot and the lab into dist/ (needs root): make image KEY=FILE
 	@test -n "$(KEY)" || { echo "Name the secret key, which is made where there is none: make image KEY=FILE"; exit 1; }

@@ -17,6 +17,7 @@ from packages.architectures import ARCHITECTURES, PackagingError
 from packages.commands import run
 from packages.mirror import find_mirror
 from packages.release import LAB_EXTRAS, build_release
+from packages.signing import sign_downloads
 from packages.sysroot import SUITE
 from packages.wheels import DIST
 from robot_runtime.places import BUILD
@@ -57,10 +58,12 @@ def main() -> int:
     parser.add_argument("key", type=Path, help="the secret key of the release; made where there is none")
     options = parser.parse_args()
     try:
-        print(build_image(options.key, DIST))
+        image = build_image(options.key, DIST)
+        sign_downloads(DIST, options.key)
     except PackagingError as problem:
         print(problem, file=sys.stderr)
         return 1
+    print(image)
     return 0
 
 

@@ -1,8 +1,9 @@
 """`python -m packages.release KEY [--machine aarch64] [--python 3.13]`: builds a signed release into `dist`.
 
 A release is a folder with the wheel of mucat, those of everything that it needs on such a computer, their
-checksums, the signature, the public key, and `install.sh`; beside it lies the same as a ZIP file.
-A robot needs no network to install it. One with 32 bits has NumPy, OpenCV and pydantic from apt.
+checksums, the signature, the public key, and `install.sh`. Beside it lie the same as a ZIP file and as a
+Debian package, and the signed checksums of all files of this version. A robot needs no network to install it.
+One with 32 bits has NumPy, OpenCV and pydantic from apt.
 """
 
 import argparse
@@ -16,7 +17,8 @@ from pathlib import Path
 from packages.architectures import ARCHITECTURES, PackagingError
 from packages.commands import run
 from packages.constraints import SMALL, small_requirements
-from packages.signing import PUBLIC_KEY, make_key, sign_folder, write_public_key
+from packages.debian_package import build_debian_package
+from packages.signing import PUBLIC_KEY, make_key, sign_downloads, sign_folder, write_public_key
 from packages.wheels import DIST, build_emulator, build_mucat
 from robot_runtime.places import PACKAGES
 from server import VERSION
@@ -46,10 +48,13 @@ def main() -> int:
     own = ".".join(platform.python_version_tuple()[:2])
     python = options.python or (SMALL["python_version"] if options.machine in SMALL_MACHINES else own)
     try:
-        print(build_release(options.key, options.machine, python, DIST, lab=options.lab))
+        folder = build_release(options.key, options.machine, python, DIST, lab=options.lab)
+        package = build_debian_package(folder, options.machine, python, lab=options.lab)
+        sign_downloads(DIST, options.key)
     except PackagingError as problem:
         print(problem, file=sys.stderr)
         return 1
+    print(folder, package, sep="\n")
     return 0
 
 

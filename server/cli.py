@@ -53,10 +53,27 @@ class LazyGroup(click.Group):
         return command
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "show_default": True})
+GREETING = f"""µ-CAT {VERSION}: the software of an underwater robot turtle. What would you like to do?
+
+  Dive now, in simulated water       mucat run
+  Install it on a robot              sudo mucat install RELEASE
+  Serve a lab with several robots    mucat lab run
+
+mucat --help lists all commands; mucat COMMAND --help explains one."""
+
+
+@click.group(
+    cls=LazyGroup,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
+)
 @click.version_option(VERSION, message="mucat %(version)s")
-def mucat() -> None:
+@click.pass_context
+def mucat(ctx: click.Context) -> None:
     """Server and tools of µ-CAT."""
+    if ctx.invoked_subcommand is None:
+        click.echo(GREETING)
+        return
     printed = logging.StreamHandler()
     printed.setFormatter(PlainFormatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
     logging.basicConfig(level=logging.WARNING, handlers=[printed])

@@ -1,11 +1,13 @@
 """Records the session of a release: `make released-session` writes it to tests/data, named by the version.
 
-It is a scenario in simulated time, as an archive, with what this version itself reads in it: the SHA-256 of
-every exported table, and the figures of a comparison. test_released_sessions.py holds later versions to it.
+It is a scenario in simulated time, as an archive and in its data folder, with what this version itself reads
+in it: the SHA-256 of every exported table, and the figures of a comparison. test_released_sessions.py holds
+later versions to it.
 """
 
 import hashlib
 import json
+import tarfile
 import zipfile
 from contextlib import closing
 from pathlib import Path
@@ -21,6 +23,9 @@ from server.platform.store import Reader
 
 RELEASED = Path(__file__).with_name("data")
 ARCHIVE, EXPECTED = "session.mucat.zip", "session.json"
+DATA, DATA_EXPECTED = "data.tar.gz", "data.json"
+LEFT_OUT = {"run", "logs", "reserve", "server.lock"}
+"""What a data folder has only while it is used, or without any content."""
 SIGNALS = ["depth.depth", "control.set_point", "truth.depth"]
 SCENARIO = """
 name = "released"
@@ -101,8 +106,16 @@ def compare(data: Path, session: int) -> dict[str, Any]:
     }
 
 
+def pack(data: Path, archive: Path) -> None:
+    """Write the content of a data folder to an archive."""
+    with tarfile.open(archive, "w:gz") as packed:
+        for path in sorted(data.iterdir()):
+            if path.name not in LEFT_OUT:
+                packed.add(path, path.name)
+
+
 def record(folder: Path) -> None:
-    """Write the archive of a new session, and what is read in it, to this folder."""
+    """Write the archive of a new session, its data folder, and what is read in it, to this folder."""
     folder.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory() as name:
         data = Path(name) / "data"
@@ -110,8 +123,11 @@ def record(folder: Path) -> None:
         scenario.write_text(SCENARIO)
         run("scenario", "run", scenario, "--data", data)
         run("export", "1", "--format", "archive", "-o", folder / ARCHIVE, "--data", data)
-        expected = {"tables": hash_tables(data, 1), "comparison": compare(data, 1)}
+        pack(data, folder / DATA)
+        tables = hash_tables(data, 1)
+        expected = {"tables": tables, "comparison": compare(data, 1)}
     (folder / EXPECTED).write_text(json.dumps(expected, indent=1) + "\n")
+    (folder / DATA_EXPECTED).write_text(json.dumps(tables, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from tests.checks.changelog import find_changelog_problems
 from tests.checks.fan_out import find_crowded_modules
 from tests.checks.links import find_dead_links
 from tests.checks.names import find_bad_names
@@ -15,6 +16,7 @@ from tests.checks.words import find_needless_words
 
 ROOT = Path(__file__).parents[2]
 CHECKS: tuple[Callable[[Path], list[str]], ...] = (
+    find_changelog_problems,
     find_bad_names,
     find_crowded_modules,
     find_dead_links,

@@ -33,6 +33,10 @@ PI_32_BITS = (
     "sudo apt install python3-venv python3-numpy python3-opencv python3-pydantic python3-libgpiod "
     "python3-picamera2 avrdude"
 )
+PIPX = (
+    'pipx run --spec "$(echo ./mucat-*.whl)[emulator]" --pip-args="--find-links . -c constraints.txt" '
+    "mucat run"
+)
 DASK = (
     "dask scheduler --protocol tls --port 8786 --tls-ca-file ca.pem --tls-cert certificate.pem "
     "--tls-key key.pem"
@@ -54,6 +58,7 @@ UNRUN = {
         "two labs; tests/server/features/backup/test_archive_backup.py has them"
     ),
     ("run/lab.md", "pip install mucat[lab]"): "the internet; tests/server/postgres.py has a server",
+    ("run/packages.md", PIPX): "the internet; tests/proofs/packages.py runs both lines",
     ("run/packages.md", "python3 -m venv mucat"): "tests/packages does the same with the wheels",
     ("run/packages.md", "sudo apt install python3-venv python3-picamera2 avrdude"): "a Raspberry Pi",
     ("run/packages.md", PI_32_BITS): "a Raspberry Pi of 32 bits",

@@ -1,4 +1,4 @@
-"""The lab as containers: every name in its compose file is one that exists."""
+"""Robot and lab as containers: every name in their compose files is one that exists."""
 
 import tomllib
 from pathlib import Path
@@ -22,6 +22,7 @@ FOLDER = PACKAGES / "packages/lab"
 COMPOSE: dict[str, Any] = yaml.safe_load((FOLDER / "compose.yaml").read_text())
 SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
 OURS = ("lab", "scheduler", "worker")
+ROBOT: dict[str, Any] = yaml.safe_load((PACKAGES / "packages/robot/compose.yaml").read_text())
 KEYS = {
     "profiles",
     "image",
@@ -51,6 +52,17 @@ def test_it_has_the_keys_of_a_compose_file_and_its_images_are_those_that_are_bui
         assert service["image"] == ("postgres:17" if name == "archive" else f"mucat:{VERSION}")
         assert set(service.get("depends_on", ())) <= SERVICES.keys()
     assert SERVICES["lab"]["depends_on"] == {"archive": {"condition": "service_healthy"}}
+
+
+def test_the_robot_of_the_image_is_for_this_computer_alone(tmp_path: Path) -> None:
+    assert ROBOT.keys() == {"name", "services", "volumes"}
+    (robot,) = ROBOT["services"].values()
+    assert robot.keys() <= KEYS
+    assert robot["image"] == f"mucat:{VERSION}"
+    port = settings_of(tmp_path, "").server.port
+    assert robot["ports"] == [f"127.0.0.1:{port}:{port}"]
+    (volume,) = robot["volumes"]
+    assert volume.split(":") == [*ROBOT["volumes"], DATA]
 
 
 def test_its_volumes_are_declared_and_its_files_are_there() -> None:

@@ -22,13 +22,23 @@ from server.features.bench.live_viewer import LiveViewer
 from server.features.bench.process_figures import anonymous_mb, core_percent
 from server.platform.settings import DataFolder
 from tests.browser.opening import DESKTOP, launched, opened_page, signed_in
-from tests.proofs.installed import DATA, ENVIRONMENT, MUCAT, InstalledRobot, config_with_board, install_wheels
+from tests.documents.blocks import read_blocks
+from tests.proofs.installed import (
+    DATA,
+    ENVIRONMENT,
+    MUCAT,
+    PLACE,
+    InstalledRobot,
+    config_with_board,
+    install_wheels,
+)
 from tests.proofs.roots import ROOTS, RootSystem
 
 ARMED = 20.0
 """s of recording."""
 SETTLE, MEASURED = 5.0, 30.0
 """s with a viewer, before and while processor time is measured."""
+ONE_LINE, TOOLS = "One line, with pipx or uv", "/opt/tools"
 COMMANDS: tuple[tuple[str, ...], ...] = (("--version",), ("sessions", "list"))
 """Commands of mucat that must work in each root, after the run."""
 
@@ -52,6 +62,8 @@ class Figures:
     """MB of anonymous memory at the end of that; with the emulator of the processor, where there is one."""
     exported: int = 0
     """Bytes of the exported file."""
+    one_line: dict[str, float] = field(default_factory=dict)
+    """s that pipx and uv take for all packages and a command, from nothing."""
     camera: dict[str, str] = field(default_factory=dict)
     firmware: str = ""
     problem: str = ""
@@ -72,11 +84,27 @@ def prove(root: RootSystem) -> Figures:
             root.run(*pip, f"mucat-emulator=={VERSION}")
             if not root.is_emulated:  # two emulators within each other are too slow for real time
                 _swim(root, figures, "emulated", None)
+                _run_in_one_line(root, figures)
         for text in COMMANDS:
             root.run(MUCAT, *text, *(("--data", f"/{DATA}") if text != ("--version",) else ()))
     except (AssertionError, OSError, subprocess.SubprocessError, httpx.HTTPError) as problem:
         figures.problem = str(problem) or type(problem).__name__
     return figures
+
+
+def _run_in_one_line(root: RootSystem, figures: Figures) -> None:
+    """Run the lines of the page for who installs nothing."""
+    (block,) = [block for block in read_blocks("run/packages.md") if block.title == ONE_LINE]
+    root.run("sh", "-euc", f"python3 -m venv {TOOLS}; {TOOLS}/bin/pip install --quiet pipx uv")
+    for line in block.text.splitlines():
+        began = time.monotonic()
+        answer = root.run(
+            "sh",
+            "-euc",
+            f"cd {PLACE}; PATH={TOOLS}/bin:$PATH; {line.replace('mucat run', 'mucat --version')}",
+        )
+        assert VERSION in answer, answer
+        figures.one_line[line.partition(" ")[0]] = round(time.monotonic() - began, 1)
 
 
 EMULATORS = {"amd64": "x86_64", "i386": "i686", "arm64": "aarch64"}

@@ -166,6 +166,11 @@ STAGES: tuple[Stage, ...] = (
                     "Containers with systemd, one of 32 bits, one on an emulated ARM processor.",
                 ),
                 Proof(
+                    "debian",
+                    "The Debian package installs, updates, goes back and leaves nothing when it is purged.",
+                    "A container with systemd; a data folder of an earlier version is taken over.",
+                ),
+                Proof(
                     "image-swims",
                     "The container image starts, and its robot swims.",
                     "buildah runs the image; its robot is armed.",

@@ -310,15 +310,21 @@ def test_the_doctor_looks_at_a_current_database_without_alembic() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "completed"),
+    ("line", "completed", "shown"),
     [
-        ("--version", ""),
-        ("--help", ""),
-        *((f"{name} --help", "") for name in cli.COMMANDS if name != "run"),
-        ("", "mucat export 3 --format c"),
+        ("", "", "mucat run"),
+        ("--version", "", "mucat"),
+        ("--help", "", "mucat"),
+        *((f"{name} --help", "", "mucat") for name in cli.COMMANDS if name != "run"),
+        ("", "mucat export 3 --format c", "csv-grid"),
+        ("", "mucat export 3", "slow:"),
+        ("", "mucat scenario run fig", "figure_14"),
+        ("", "mucat mission try first", "first_dive"),
     ],
 )
-def test_a_command_line_is_read_before_anything_slow_is_loaded(line: str, completed: str) -> None:
+def test_a_command_line_is_read_before_anything_slow_is_loaded(
+    line: str, completed: str, shown: str, tmp_path: Path
+) -> None:
     program = (
         "import atexit, sys, server.cli\n"
         "slow = {'sqlalchemy', 'pydantic', 'fastapi', 'numpy', 'alembic'}\n"
@@ -330,10 +336,19 @@ def test_a_command_line_is_read_before_anything_slow_is_loaded(line: str, comple
         "_MUCAT_COMPLETE": "bash_complete",
         "COMP_WORDS": completed,
         "COMP_CWORD": str(len(parts) - 1),
+        "MUCAT_DATA": str(tmp_path),
     }
     output = printed(program, **(completion if completed else {}))
     assert output.splitlines()[-1] == "slow:"
-    assert ("csv-grid" if completed else "mucat") in output
+    assert shown in output
+
+
+def test_alone_it_says_what_one_may_want() -> None:
+    done = mucat()
+    assert done.returncode == 0
+    for line in ("mucat run", "sudo mucat install RELEASE", "mucat lab run", "mucat --help"):
+        assert line in done.stdout
+    assert len(done.stdout.splitlines()) <= 10
 
 
 def test_every_command_has_a_help_text() -> None:

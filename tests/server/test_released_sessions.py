@@ -7,6 +7,7 @@ folder of 0.1.0, which had no archives.
 import asyncio
 import json
 import re
+import shutil
 from collections import Counter
 from pathlib import Path
 
@@ -19,10 +20,11 @@ from server.library.replay import RANGE_MAX, read_blocks_between
 from server.platform.settings import Settings
 from server.platform.store import Store
 from server.recording.session import find_row
-from tests.released import ARCHIVE, EXPECTED, RELEASED, compare, hash_tables
+from tests.released import ARCHIVE, DATA, DATA_EXPECTED, EXPECTED, RELEASED, compare, hash_tables
 from tests.stack import ROOT
 
 FOLDERS = sorted(path.parent for path in RELEASED.glob(f"*/{ARCHIVE}"))
+FULL_FOLDERS = sorted(path.parent for path in RELEASED.glob(f"*/{DATA}"))
 
 
 @pytest.fixture(params=FOLDERS, ids=lambda folder: folder.name)
@@ -69,3 +71,10 @@ def test_a_session_of_another_version_is_compared_and_exported_as_by_its_own(
     figures = expected["comparison"]["figures"]
     assert {name: compared["figures"][name] for name in figures} == pytest.approx(figures)
     assert compared["lines"] == expected["comparison"]["lines"]
+
+
+@pytest.mark.parametrize("folder", FULL_FOLDERS, ids=lambda folder: folder.name)
+def test_a_data_folder_of_another_version_is_upgraded_and_read(settings: Settings, folder: Path) -> None:
+    shutil.unpack_archive(folder / DATA, settings.data.path)
+    expected = json.loads((folder / DATA_EXPECTED).read_text(encoding="utf-8"))
+    assert hash_tables(settings.data.path, 1) == expected

@@ -6,12 +6,13 @@ from typing import Literal
 import click
 
 from server.platform.command_line import FILE, RowCommand, name_error, with_settings
+from server.platform.name_completion import SESSION_NUMBER
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
 
 @click.command(cls=RowCommand)
-@click.argument("sessions", type=int, nargs=-1, required=True, metavar="SESSION...")
+@click.argument("sessions", type=SESSION_NUMBER, nargs=-1, required=True, metavar="SESSION...")
 @click.option("-o", "--out", type=FILE, default="report.html", help="The file to write.")
 @click.option(
     "--align",

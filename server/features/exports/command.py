@@ -9,6 +9,7 @@ import click
 
 from server.platform.command_line import FILE, NUMBER, RowCommand, name_error, with_settings
 from server.platform.folder_lock import claim, record_command
+from server.platform.name_completion import SESSION_NUMBER
 from server.platform.running_server import send_file, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
@@ -21,7 +22,7 @@ IMPORT_SECONDS = 3600.0
 
 
 @click.command("export", cls=RowCommand)
-@click.argument("session", type=int)
+@click.argument("session", type=SESSION_NUMBER)
 @click.option("--format", type=click.Choice(FORMATS), default="csv")
 @click.option("--topics", multiple=True, metavar="TOPIC...", help="Default: all.")
 @click.option("--columns", multiple=True, metavar="TOPIC.COLUMN...", help="For csv-grid. Default: all.")

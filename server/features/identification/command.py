@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from server.platform.command_line import FILE, with_settings
+from server.platform.name_completion import SESSION_NUMBER
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
@@ -18,8 +19,10 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("sessions", type=int, nargs=-1, required=True, metavar="SESSION...")
-@click.option("--leave-out", type=int, metavar="SESSION", help="A session that checks the prediction.")
+@click.argument("sessions", type=SESSION_NUMBER, nargs=-1, required=True, metavar="SESSION...")
+@click.option(
+    "--leave-out", type=SESSION_NUMBER, metavar="SESSION", help="A session that checks the prediction."
+)
 @click.option("-o", "--out", type=FILE, default="craft.toml", help="The craft file to write.")
 @click.option("--report", type=FILE, help="Also write an HTML file with measured over predicted signals.")
 @with_settings

@@ -8,17 +8,28 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from server.platform.command_line import TAKE_OVER, with_settings
+from server.platform.name_completion import complete_document, folder_of
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from robot_runtime.missions.document import MissionDocument
     from server.features.missions.schemas import MissionTrialResult
 
-MISSION = click.argument("file", metavar="MISSION")
 POLL_SECONDS = 0.5
 SILENT_SECONDS = 2.0
 """A running mission tells its state twice as often."""
+
+
+def _complete(ctx: click.Context, _: click.Parameter, incomplete: str) -> "list[CompletionItem]":
+    from robot_runtime.missions.library import SHIPPED
+
+    return complete_document(SHIPPED, folder_of(ctx).missions, incomplete)
+
+
+MISSION = click.argument("file", metavar="MISSION", shell_complete=_complete)
 
 
 @click.group()

@@ -6,13 +6,23 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from server.platform.command_line import TAKE_OVER, with_settings
+from server.platform.name_completion import complete_document, folder_of
 from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from robot_runtime.experiments.scenario.document import Scenario
 
-SCENARIO = click.argument("file", metavar="SCENARIO")
+
+def _complete(ctx: click.Context, _: click.Parameter, incomplete: str) -> "list[CompletionItem]":
+    from server.library.scenarios import SHIPPED
+
+    return complete_document(SHIPPED, folder_of(ctx).scenarios, incomplete)
+
+
+SCENARIO = click.argument("file", metavar="SCENARIO", shell_complete=_complete)
 
 
 @click.group()

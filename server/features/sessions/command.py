@@ -13,6 +13,7 @@ import click
 
 from server.platform.command_line import name_error, with_settings
 from server.platform.folder_lock import claim
+from server.platform.name_completion import SESSION_NUMBER
 from server.platform.running_server import ask, server_runs
 from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from server.library.schemas import SessionDetail
     from server.recording.schemas import Session, SessionSummary
 
-SESSION = click.argument("session", type=int)
+SESSION = click.argument("session", type=SESSION_NUMBER)
 REQUESTS = {
     "change": ("PATCH", "/sessions/{}"),
     "delete": ("DELETE", "/sessions/{}"),
