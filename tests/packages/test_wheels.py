@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -46,6 +47,22 @@ def test_every_file_of_the_packages_is_in_the_wheel(installation: Installation) 
     )
     missing = [file for file in listed.stdout.splitlines() if not (installation.packages / file).exists()]
     assert missing == []
+
+
+def test_the_services_are_read_from_a_wheel_that_is_not_unpacked(mucat_wheel: Path) -> None:
+    program = (
+        f"import sys; sys.path.insert(0, {str(mucat_wheel)!r})\n"
+        "from server.features.installation.places import InstallPlaces\n"
+        "from server.features.installation.units import write_units\n"
+        "print(__import__('server').__file__, *write_units(InstallPlaces()))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd="/", capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    file, *names = done.stdout.split()
+    assert file.startswith(str(mucat_wheel))
+    assert {"mucat.service", "mucat-runtime.service"} <= set(names)
 
 
 def test_a_scenario_swims_in_simulated_time(installation: Installation, elsewhere: Path) -> None:

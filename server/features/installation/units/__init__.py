@@ -1,10 +1,11 @@
 """The services of an installed robot or lab, and the command `mucat` of its shell."""
 
-from pathlib import Path
+from importlib.resources import files
 
 from server.features.installation.places import USER, InstallPlaces
 
-FOLDER = Path(__file__).parent
+FOLDER = files(__name__)
+"""An installation runs from wheels that are not unpacked."""
 RECOVER = "mucat-recover.service"
 UPDATE = ("mucat-update.path", "mucat-update.service")
 """The services of updates from the page, which a lab's page does not offer.
