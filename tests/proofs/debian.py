@@ -22,10 +22,11 @@ from tests.released import DATA, RELEASED
 SYSTEM = SYSTEMS[0]
 FIRST, SECOND = "first.deb", "second.deb"
 ARM = """
-print(ask(data, "POST", "/robot/commands/arm", {"unwatched": 0}))
+ask(data, "POST", "/control/take?over=true")
+ask(data, "POST", "/robot/commands/arm", {"unwatched": 0})
 """
 STOP = """
-print(ask(data, "POST", "/robot/stop"))
+ask(data, "POST", "/robot/stop")
 """
 TAKE_OVER = (
     "systemctl stop mucat mucat-runtime && rm -rf /var/lib/mucat/*"
