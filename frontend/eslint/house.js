@@ -22,6 +22,7 @@ const LAYERS = [
   ['panels/*'],
   ['panels'],
   ['layout'],
+  ['guide'],
   ['shell', 'pages/*'],
   ['flight', 'finder'],
   ['app'],

@@ -28,10 +28,18 @@ ARGUMENTS = [
 
 SECRET = "mucat.page_secret"
 """The key under which the page stores its part of the sign-in."""
+GUIDE = "mucat-guide"
+NO_GUIDE = '{"shown":false}'
+"""What the page stores under this key once somebody wants no card of the first dive."""
+DIVED = f"if (self === top && location.protocol !== 'about:') localStorage.setItem('{GUIDE}', '{NO_GUIDE}')"
+"""A script of a browser whose person has dived before."""
 
 
 def sign_in(context: BrowserContext, url: str, data: Path) -> str:
-    """Pair this browser with the server of this data folder, as an operator's; return its page's secret."""
+    """Pair this browser with the server of this data folder, as an operator's who has dived before.
+
+    Return its page's secret.
+    """
     with httpx.Client(
         base_url=f"{url}/api/access", timeout=SECONDS, auth=ShellAuth(DataFolder(data))
     ) as shell:
@@ -44,4 +52,5 @@ def sign_in(context: BrowserContext, url: str, data: Path) -> str:
     # Panels in frames may not store anything.
     own = f"self === top && location.origin === {json.dumps(url)}"
     context.add_init_script(f"if ({own}) localStorage.setItem({json.dumps(SECRET)}, {json.dumps(secret)})")
+    context.add_init_script(DIVED)
     return secret

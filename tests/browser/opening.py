@@ -6,7 +6,7 @@ from typing import Any
 
 from playwright.sync_api import Browser, BrowserContext, Page, StorageState, ViewportSize, sync_playwright
 
-from tests.browser.chromium import ARGUMENTS, HEADLESS_SHELL, SECRET, sign_in
+from tests.browser.chromium import ARGUMENTS, GUIDE, HEADLESS_SHELL, NO_GUIDE, SECRET, sign_in
 from tests.browser.site import Site
 from tests.waiting import SECONDS
 
@@ -54,11 +54,15 @@ def signed_in(browser: Browser, site: Site) -> StorageState:
     context = browser.new_context()
     secret = sign_in(context, site.url, site.data)
     stored = context.storage_state()
-    # The flight view has tests of its own; in those of a page nothing else comes by itself.
+    # The flight view and the first dive have tests of their own; in those of a page nothing else comes.
     stored["origins"] = [
         {
             "origin": site.url,
-            "localStorage": [{"name": SECRET, "value": secret}, {"name": "mucat-flight", "value": "off"}],
+            "localStorage": [
+                {"name": SECRET, "value": secret},
+                {"name": "mucat-flight", "value": "off"},
+                {"name": GUIDE, "value": NO_GUIDE},
+            ],
         }
     ]
     context.close()

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 from playwright.sync_api import Browser, Page, expect
 
+from tests.browser.chromium import DIVED
 from tests.browser.site import Site
 
 
@@ -27,6 +28,7 @@ def follow(page: Page, link: str, name: str = "") -> None:
 def somebody(browser: Browser, site: Site, role: str) -> Iterator[Page]:
     """The page in another browser, signed in by a link; console errors fail the test."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, color_scheme="dark")
+    context.add_init_script(DIVED)
     page = context.new_page()
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))

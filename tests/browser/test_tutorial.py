@@ -1,84 +1,96 @@
-"""The tutorial as a person walks it: the names that it prints in bold are pressed, in its order."""
+"""The first dive as a person walks it: only what the card says and outlines is pressed."""
 
 import re
-from collections.abc import Callable
-from typing import Literal
 
-from playwright.sync_api import Locator, Page, expect
+import pytest
+from playwright.sync_api import Browser, Locator, Page, StorageState, expect
 
-from tests.browser.driving import hold_to_arm, wait_for_depth
-from tests.documents.blocks import DOCS
+from tests.browser.axe import AXE, faults_in_both_themes
+from tests.browser.chromium import GUIDE
+from tests.browser.driving import HOLD_SECONDS
+from tests.browser.opening import DESKTOP, opened_page
 from tests.stack import Stack
 
-TUTORIAL = (DOCS / "use/tutorial.md").read_text(encoding="utf-8")
-
-
-def names_of(*steps: int) -> list[str]:
-    """Return the names in bold of these steps, in their order."""
-    chapters = re.split(r"^## (\d+)\. ", TUTORIAL, flags=re.MULTILINE)
-    texts = dict(zip(map(int, chapters[1::2]), chapters[2::2], strict=True))
-    return [name for step in steps for name in re.findall(r"\*\*(.+?)\*\*", texts[step])]
+STEPS = 10
+OUTLINED = "[data-guided]"
 
 
 class Walker:
-    """Presses what has a name; a panel that was named is where the next one is looked for first."""
+    """Presses what the card outlines, until it ticks the step."""
 
     def __init__(self, page: Page) -> None:
         self._page = page
-        self._panel: Locator | None = None
+        self.card = page.get_by_role("region", name="First dive")
 
-    def press(self, name: str) -> None:
-        """Press a key, the arming button, a button, or a choice of a list; look at a panel."""
-        panels = self._page.get_by_role("region", name=name, exact=True)
-        if len(name) == 1:
-            self._page.keyboard.press(name.lower())
-        elif name == "Hold to arm":
-            hold_to_arm(self._page)
-        elif panels.count():
-            self._panel = panels
-        elif (button := self._locate("button", name)) is not None:
-            button.click()
+    def walk(self, number: int) -> None:
+        """Do the step of this number, from 1 on."""
+        expect(self.card).to_contain_text(f"{number} of {STEPS}")
+        keys = self.card.locator("strong", has_text=re.compile(r"^[A-Z]$"))
+        if keys.count():
+            self._page.keyboard.press(keys.inner_text().lower())
+            self._page.evaluate(f"window.pressed = document.querySelector('{OUTLINED}')")
+        while (control := self._next(number)) is not None:
+            self._press(control)
+
+    def _next(self, number: int) -> Locator | None:
+        """Return what is outlined now and has not been pressed yet; None once the step is ticked."""
+        self._page.wait_for_function(
+            """([outlined, count]) => {
+                const control = document.querySelector(outlined);
+                const card = document.querySelector('section[aria-label="First dive"]');
+                if (!card.textContent.includes(count)) return true;
+                return control && control !== window.pressed && !control.ariaDisabled?.includes('true');
+            }""",
+            arg=[OUTLINED, f"{number} of {STEPS}"],
+        )
+        ticked = f"{number} of {STEPS}" not in self.card.inner_text()
+        return None if ticked else self._page.locator(OUTLINED)
+
+    def _press(self, control: Locator) -> None:
+        control.evaluate("control => { window.pressed = control }")
+        if control.evaluate("control => control.localName") == "select":
+            (choice,) = [
+                name
+                for name in self.card.locator("strong").all_inner_texts()
+                if control.locator("option", has_text=re.compile(f"^{name}$")).count()
+            ]
+            control.select_option(choice)
+        elif control.inner_text().startswith("Hold to"):
+            self._hold(control)
         else:
-            choice = self._locate("option", name)
-            assert choice is not None, f"the page has no {name}"
-            choice.locator("xpath=..").select_option(choice.get_attribute("value"))
+            control.click()
 
-    def _locate(self, role: Literal["button", "option"], name: str) -> Locator | None:
-        for position in (self._panel, self._page):
-            if (
-                position is not None
-                and (element := position.get_by_role(role, name=name, exact=True)).count()
-            ):
-                return element
-        return None
+    def _hold(self, control: Locator) -> None:
+        """Hold it until it is answered. Where the robot refuses, it is held again, as a person does."""
+        with self._page.expect_response(re.compile("/(arm|start)$"), timeout=1000 * HOLD_SECONDS) as answered:
+            control.hover()
+            self._page.mouse.down()
+        self._page.mouse.up()
+        if not answered.value.ok:
+            self._page.evaluate("window.pressed = null")
 
 
-def test_the_tutorial_is_walked_word_by_word(page: Page, stack: Stack) -> None:
-    def controller() -> str:
-        (depth,) = (loop for loop in stack.api.get("/robot").json()["loops"] if loop["name"] == "depth")
-        return str(depth["controller"])
-
-    def in_force(title: str) -> None:
-        panel = page.get_by_role("region", name="Depth controller")
-        expect(panel.get_by_role("option", name=f"{title} (in use)")).to_have_count(1)
-
-    before = controller()
-    applied = iter(("PID", "Model-based"))
-    effects: dict[str, Callable[[], None]] = {
-        "Hold to arm": lambda: wait_for_depth(page, 0.4, 0.6),
-        "yellow": lambda: expect(page.get_by_text("set point 1.00 m", exact=True)).to_be_visible(),
-        "no card": lambda: expect(page.get_by_text("set point 0.50 m", exact=True)).to_be_visible(),
-        "Apply": lambda: in_force(next(applied)),
-        "M": lambda: expect(page.get_by_text(re.compile("^Marked")).first).to_be_visible(),
-        "STOP": lambda: expect(page.get_by_text("Disarmed", exact=True)).to_be_visible(),
-    }
-    pressed = names_of(2, 3, 4, 5, 6)
-    walker = Walker(page)
-    for name in pressed:
-        walker.press(name)
-        effects.get(name, lambda: None)()
-    assert effects.keys() <= {*pressed}
-    assert next(applied, None) is None
+@pytest.mark.usefixtures("_at_rest")
+def test_the_first_dive_is_walked_as_its_card_says(
+    browser: Browser, stack: Stack, cookies: StorageState
+) -> None:
+    (before,) = (loop for loop in stack.api.get("/robot").json()["loops"] if loop["name"] == "depth")
+    with opened_page(browser, stack, cookies, DESKTOP) as page:
+        page.evaluate(f"localStorage.removeItem('{GUIDE}')")
+        page.reload()
+        walker = Walker(page)
+        expect(walker.card).to_be_visible()
+        page.evaluate(AXE.read_text())
+        assert faults_in_both_themes(page) == []
+        for number in range(1, STEPS + 1):
+            walker.walk(number)
+        expect(walker.card).to_contain_text("You have dived")
+        walker.card.get_by_role("button", name="Close").click()
+        page.reload()
+        expect(page.get_by_role("link", name="Operate")).to_be_visible()
+        expect(walker.card).to_have_count(0)
     stack.api.post("/control/take?over=true").raise_for_status()
-    stack.api.post("/robot/commands/loop", json={"name": "depth", "controller": before}).raise_for_status()
+    stack.api.post(
+        "/robot/commands/loop", json={"name": "depth", "controller": before["controller"]}
+    ).raise_for_status()
     stack.api.post("/control/release").raise_for_status()

@@ -5,7 +5,7 @@ export const shell = {
   titleOf: (page: string) => `${page} · µ-CAT`,
   pages: 'Pages',
   help: 'Help for this page',
-  helpDrawer: { title: 'Help', tab: 'Open in a tab', frame: 'Chapter of the help' },
+  helpDrawer: { title: 'Help', tab: 'Open in a tab', frame: 'Chapter of the help', guide: 'First dive' },
   clock: (moment: string) => `Robot’s clock, in this device’s zone: ${moment}`,
   bookmark: 'Bookmark',
   lookingOn: {
