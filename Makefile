@@ -138,8 +138,8 @@ figures: setup-test host-firmware ## remake the thesis's Figures 14 to 16 in doc
 notebooks: setup-test host-firmware ## run the notebooks of docs/use/notebooks, and write their pages and figures
 	$(PYTHON) -W ignore -m tests.notebooks
 
-screenshots: setup-test ## every page at both sizes and in both themes, into build/screenshots
-	$(PYTHON) -m tests.browser.screenshots build/screenshots
+screenshots: setup-test host-firmware ## take the manual's pictures and the film anew, into docs (some with ONLY="operate film")
+	$(PYTHON) -W ignore -m tests.pictures $(ONLY)
 
 lab-proof: setup-test host-firmware ## a whole lab in network namespaces while its parts fail: cut cables, kills, wrong certificates, a full disk (needs root)
 	@$(PYTHON) -W ignore -m tests.proofs.lab

@@ -1,21 +1,37 @@
 """All pages, and their addresses."""
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 from playwright.sync_api import Page, expect
 
+from server.platform.settings import DataFolder
 from tests.browser.site import Site
+from tests.server.features.sweeps.sweep_rig import keep_scenario
 from tests.waiting import wait_for
 
 SESSIONS = ("Dive to half a metre", "Half a metre with PID")
 """{first} and {second} in the addresses."""
 
+SWEEP = """
+format = 1
+name = "still_water"
+title = "Gains in still water"
+scenario = "short"
+seeds = 3
+[vary]
+"control.gains.pid.kp" = [2.0, 4.0, 8.0]
+"control.gains.pid.kd" = [1.0, 2.0, 4.0]
+"""
+
 
 @dataclass(frozen=True, slots=True)
 class View:
     """One page. `address` follows the # and may name two sessions, {first} and {second}, a {moment} (s) of
-    the first, and a test's {run}; `shows` is in a heading that says that it is there."""
+    the first, a test's {run} and a {sweep}; `shows` is in a heading that says that it is there."""
 
     name: str
     address: str
@@ -31,6 +47,9 @@ PAGES = (
     View("missions", "missions", "Library"),
     View("mission", "missions/edit/two_depths", "Two depths"),
     View("scenarios", "scenarios", "New run"),
+    View("sweeps", "scenarios/sweeps", "Sweeps"),
+    View("new-sweep", "scenarios/sweeps/new", "New sweep"),
+    View("sweep", "scenarios/sweeps/{sweep}", "Gains in still water"),
     View("comm-tests", "comm-tests", "Runs"),
     View("comm-test", "comm-tests/runs/{run}", "All cells"),
     View("comm-tests-compare", "comm-tests/compare/table6/{run}", "Compare runs"),
@@ -76,6 +95,7 @@ def show(page: Page, site: Site, view: View) -> None:
     there = {session["name"]: session for session in site.api.get("/sessions").json()}
     first, second = (there[name] for name in SESSIONS)
     names = {
+        "sweep": find_sweep(site) if "{sweep}" in view.address else "",
         "first": first["id"],
         "second": second["id"],
         "moment": f"{first['duration'] / 2:.1f}",
@@ -84,6 +104,29 @@ def show(page: Page, site: Site, view: View) -> None:
     page.goto(f"{site.url}/#/{view.address.format(**names)}")
     expect(page.get_by_role("heading", name=re.compile(view.shows)).first).to_be_visible()
     settle(page)
+
+
+@contextmanager
+def short_scenario(site: Site) -> Iterator[None]:
+    """Have a scenario of 12 s in the library for a while."""
+    folder = DataFolder(site.data).scenarios
+    keep_scenario(folder)
+    yield
+    (folder / "short.toml").unlink()
+
+
+def find_sweep(site: Site) -> int:
+    """Return a sweep that is complete; without one it is computed, which takes a few seconds."""
+
+    def listed() -> list[dict[str, Any]]:
+        sweeps: list[dict[str, Any]] = site.api.get("/sweeps").json()
+        return [sweep for sweep in sweeps if sweep["name"] == "still_water"]
+
+    if not listed():
+        with short_scenario(site):
+            site.api.post("/sweeps", json={"text": SWEEP}).raise_for_status()
+    wait_for(lambda: listed()[0]["state"] == "complete", "the end of the sweep")
+    return int(listed()[0]["id"])
 
 
 def settle(page: Page) -> None:

@@ -9,7 +9,7 @@ from tests.checks.changelog import find_changelog_problems
 from tests.checks.fan_out import find_crowded_modules
 from tests.checks.links import find_dead_links
 from tests.checks.names import find_bad_names
-from tests.checks.pictures import find_needless_pictures
+from tests.checks.pictures import find_foreign_photographs, find_needless_pictures
 from tests.checks.topics import find_compared_names
 from tests.checks.version import find_other_versions
 from tests.checks.words import find_needless_words
@@ -21,6 +21,7 @@ CHECKS: tuple[Callable[[Path], list[str]], ...] = (
     find_crowded_modules,
     find_dead_links,
     find_needless_pictures,
+    find_foreign_photographs,
     find_other_versions,
     find_compared_names,
     find_needless_words,

@@ -4,7 +4,7 @@ import asyncio
 from contextlib import ExitStack
 from pathlib import Path
 
-from server.interchange.presence import Presence
+from server.interchange.presence import Presence, PresentAlarm, PresentMission
 from server.platform.paired_robots import PairedRobot, PairedRobots
 from server.platform.settings import DataFolder, Settings, make_folders
 from tests.pages.threaded_site import ThreadedSite
@@ -14,6 +14,40 @@ from tests.stack import free_port
 
 PERIOD = 0.2
 """s between two presences: a test need not wait for a second."""
+
+
+def presence(**values: object) -> Presence:
+    """Return a presence of a robot at rest, with these values."""
+    at_rest: dict[str, object] = {
+        "mode": "disarmed",
+        "armed": False,
+        "connected": True,
+        "depth": 0.02,
+        "battery": 7.9,
+        "battery_left": None,
+        "mission": None,
+        "recording": None,
+        "disk_free": 20_000_000_000,
+        "disk_total": 32_000_000_000,
+        "alarms": [],
+        "software": "1.0",
+        "address": "",
+        "fingerprint": "",
+    }
+    return Presence.model_validate(at_rest | values)
+
+
+SWIMMING = presence(
+    mode="automatic",
+    armed=True,
+    depth=1.234,
+    battery=7.4,
+    battery_left=1500.0,
+    mission=PresentMission(title="Survey of the pool", phase="running", progress=0.42),
+    recording="2026-11-24 dive",
+    alarms=[PresentAlarm(severity="caution", what="The battery is low.")],
+    address="https://turtle-1.local:8000",
+)
 
 
 class LabSite(ThreadedSite):

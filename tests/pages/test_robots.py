@@ -7,44 +7,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from server.interchange.presence import Presence, PresentAlarm, PresentMission
 from tests.browser.opening import DESKTOP
 from tests.browser.people import follow, make_link
-from tests.pages.lab_site import LabSite
-
-
-def presence(**values: object) -> Presence:
-    """Return a presence of a robot at rest, with these values."""
-    at_rest: dict[str, object] = {
-        "mode": "disarmed",
-        "armed": False,
-        "connected": True,
-        "depth": 0.02,
-        "battery": 7.9,
-        "battery_left": None,
-        "mission": None,
-        "recording": None,
-        "disk_free": 20_000_000_000,
-        "disk_total": 32_000_000_000,
-        "alarms": [],
-        "software": "1.0",
-        "address": "",
-        "fingerprint": "",
-    }
-    return Presence.model_validate(at_rest | values)
-
-
-SWIMMING = presence(
-    mode="automatic",
-    armed=True,
-    depth=1.234,
-    battery=7.4,
-    battery_left=1500.0,
-    mission=PresentMission(title="Survey of the pool", phase="running", progress=0.42),
-    recording="2026-11-24 dive",
-    alarms=[PresentAlarm(severity="caution", what="The battery is low.")],
-    address="https://turtle-1.local:8000",
-)
+from tests.pages.lab_site import SWIMMING, LabSite, presence
 
 
 @contextmanager

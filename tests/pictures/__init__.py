@@ -1,0 +1,1 @@
+"""The manual's pictures and its film, taken from the running product."""
