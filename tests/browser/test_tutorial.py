@@ -89,6 +89,8 @@ def test_the_first_dive_is_walked_as_its_card_says(
         page.reload()
         expect(page.get_by_role("link", name="Operate")).to_be_visible()
         expect(walker.card).to_have_count(0)
+    # The mission goes on, and refuses another controller.
+    stack.calm()
     stack.api.post("/control/take?over=true").raise_for_status()
     stack.api.post(
         "/robot/commands/loop", json={"name": "depth", "controller": before["controller"]}
