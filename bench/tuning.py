@@ -1,7 +1,6 @@
 """Results of relay tuning: the depth's limit cycle, and a step with the gains of each rule.
 
-In simulated time, with the robot's own firmware on this computer. `python -m bench.tuning` prints the
-tables of docs/develop/controllers.md.
+In simulated time, with the robot's own firmware on this computer. `python -m bench.tuning` prints both.
 """
 
 from collections.abc import Mapping

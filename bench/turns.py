@@ -1,4 +1,4 @@
-"""Measures the controllers of heading, pitch and roll in simulated time, for docs/develop/controllers.md.
+"""Measures the controllers of heading, pitch and roll in simulated time.
 
 `python -m bench.turns` prints two tables: each loop on the nominal robot, and the turns by tilted fins on all
 variants. The figures use the true attitude, without the sensors' noise.

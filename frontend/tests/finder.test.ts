@@ -1,5 +1,3 @@
-import { readFileSync } from 'node:fs';
-import path from 'node:path';
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { FinderState } from '../src/finder.svelte';
 import { LEFT_HAND, RIGHT_HAND } from '../src/drive/keys';
@@ -27,12 +25,6 @@ describe('the list of keys', () => {
   it('has every key that drives', () => {
     const caps = keyGroups().flatMap(({ keys }) => keys.map((key) => key.caps));
     for (const { cap } of [...LEFT_HAND, ...RIGHT_HAND].flat()) expect(caps).toContain(cap);
-  });
-
-  it('is the one of the manual', () => {
-    const manual = readFileSync(path.resolve(import.meta.dirname, '../../docs/reference/keys.md'), 'utf8');
-    const tables = keyGroups().map(({ title, keys }) => [`## ${title}`, '', '| key | does |', '|---|---|', ...keys.map(({ caps, what }) => `| ${caps} | ${what} |`), ''].join('\n'));
-    expect(manual.slice(manual.indexOf('## '))).toBe(tables.join('\n'));
   });
 });
 

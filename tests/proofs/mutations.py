@@ -1,4 +1,15 @@
-"""Changes of a Python function that remove a guard, found in its syntax tree rather than in its text."""
+"""Changes of a Python function that remove a guard, found in its syntax tree rather than in its text.
+
+A name (a variable, an attribute or a text) must occur once in the function; else a longer one is quoted:
+
+    drop = "name"             the statement (a call, a `raise`) that uses it
+    never, always = "name"    the condition that uses it becomes false, or true
+    without = "name"          what uses it in an `and`, an `or` or a list; the keyword or entry of this name
+    false = "name"            the value of this variable or entry becomes false
+    returns = "True"          the function returns this at once
+    unwrap = "name"           its call goes, the argument stays
+    swap = ["old", "new"]     another name or text stands in its place
+"""
 
 import ast
 from collections.abc import Callable, Iterator
