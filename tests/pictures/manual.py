@@ -37,7 +37,7 @@ class ManualPicture:
 
 
 PICTURES = (
-    ManualPicture(name="first-dive", stage="robot", address="operate", act=views.see),
+    ManualPicture(name="first-dive", stage="robot", address="operate", act=views.be_guided),
     ManualPicture(name="panels", stage="robot", address="operate", size="screen", act=views.arrange_panels),
     ManualPicture(name="tune-parameters", stage="robot", address="tune/parameters"),
     ManualPicture(

@@ -30,6 +30,14 @@ def open_help(page: Page, _: Site) -> None:
     expect(chapter.get_by_role("heading", level=1)).to_be_visible()
 
 
+def be_guided(page: Page, site: Site) -> None:
+    """Have the card of the first dive, which this browser has put away."""
+    open_help(page, site)
+    page.get_by_role("button", name="First dive").click()
+    expect(page.get_by_role("region", name="First dive")).to_be_visible()
+    see(page, site)
+
+
 def await_figures(page: Page, site: Site) -> None:
     """Wait until the lab has computed those of all sessions."""
     sessions = len(site.api.get("/sessions").json())
