@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import requests
 import schemathesis
@@ -35,6 +36,7 @@ from robot_runtime.config import RobotConfig
 from server.features.events.config import EventsConfig
 from server.health.monitor import HealthMonitor
 from server.platform.settings import DataFolder, Settings, make_folders
+from server.stream import bridge
 from tests.server.blocks import depth_block, state_block
 from tests.server.serving import Served, serve
 from tests.server.waiting import until
@@ -138,7 +140,9 @@ def run_surface() -> Iterator[Surface]:
             ready.set()
             await asyncio.to_thread(leave.wait)
 
-    with tempfile.TemporaryDirectory(prefix="mucat-") as name:
+    # A runtime's end that waits for a processor is not silent.
+    patient = patch.object(bridge, "ANSWER_SECONDS", PATIENCE / 2)
+    with patient, tempfile.TemporaryDirectory(prefix="mucat-") as name:
         folder = DataFolder(Path(name) / "data")
         make_folders(folder)
         config = Path(name) / "robot.toml"
