@@ -31,7 +31,7 @@ const CASES: Record<StepName, readonly [not: Situation, done: Situation]> = {
   controller: [SURFACE, inState({ loops: [{ name: 'depth', controller: 'predictive' }] as State['loops'] })],
   mark: [{ ...SURFACE, recording: recording(0) }, { ...SURFACE, recording: recording(1) }],
   stop: [{ ...SURFACE, recording: recording(1) }, { ...SURFACE, recording: recording(1, 'operator') }],
-  mission: [{ ...SURFACE, mission: mission('failed') }, inState({ armed: true }, { mission: mission('running') })],
+  mission: [{ ...SURFACE, mission: mission('succeeded') }, inState({ armed: true }, { mission: mission('running') })],
   story: [{ ...SURFACE, page: 'sessions', within: ['3', 'data'] }, { ...SURFACE, page: 'sessions', within: ['3'] }],
   compare: [{ ...SURFACE, page: 'sessions', within: ['compare', '3'] }, { ...SURFACE, page: 'sessions', within: ['compare', '3,4'] }],
   export: [{ ...SURFACE, exports: [{ state: 'running' } as ExportJob] }, { ...SURFACE, exports: [{ state: 'done' } as ExportJob] }],

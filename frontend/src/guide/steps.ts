@@ -20,6 +20,7 @@ export interface Situation {
   readonly outside: boolean;
   /** whether this computer can draw that picture */
   readonly drawable: boolean;
+  /** those that ended since it has been the step to create one */
   readonly exports: readonly ExportJob[];
 }
 
@@ -84,7 +85,7 @@ export const STEPS: Readonly<Record<StepName, Step>> = {
   mission: {
     page: 'missions',
     controls: ['.hold', 'a[href="#/missions/edit/two_depths"]', '.back'],
-    done: ({ mission, state }) => mission !== null && (mission.phase === 'succeeded' || isGoing(phaseOf(mission, state))),
+    done: ({ mission, state }) => mission !== null && isGoing(phaseOf(mission, state)),
   },
   story: {
     page: 'sessions',
