@@ -25,8 +25,8 @@ def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, site: S
         titles[view.name] = page.title()
     assert titles["operate"] == "Operate · µ-CAT"
     assert titles["sessions"] == "Sessions · µ-CAT"
-    views = [name for name in titles if name.startswith(("tune-", "session-"))]
-    # Tune's views are one page, and those of a session have its name.
+    views = [name for name in titles if name.startswith(("tune-", "session-")) or name == "sweeps"]
+    # Tune's views are one page, so are those of scenarios, and those of a session have its name.
     assert len(set(titles.values())) >= len(PAGES) - len(views) + 1, titles
 
 
