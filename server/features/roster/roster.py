@@ -112,12 +112,17 @@ class Roster:
     async def measure_clocks(self) -> None:
         """Measure the clock of each robot that is there, once a minute, for ever."""
         while True:
-            now = self._clock.now()
-            for name, seen in list(self._seen.items()):
-                if self._is_present(seen) and now - seen.clock_measured >= CLOCK_SECONDS:
-                    seen.clock_measured = now
-                    await self._measure_clock(name, seen)
+            await self.measure_due_clocks()
             await asyncio.sleep(LOOK_SECONDS)
+
+    async def measure_due_clocks(self) -> None:
+        """Measure those that were measured a minute ago; sooner those that are not known yet."""
+        now = self._clock.now()
+        for name, seen in list(self._seen.items()):
+            period = AGAIN_SECONDS if seen.clock_offset is None else CLOCK_SECONDS
+            if self._is_present(seen) and now - seen.clock_measured >= period:
+                seen.clock_measured = now
+                await self._measure_clock(name, seen)
 
     def see(self, robot: str, data: bytes) -> None:
         """Take in a robot's presence."""
