@@ -8,22 +8,13 @@ import os
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import robot_runtime.experiments.scenario
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
-from robot_runtime.experiments.scenario.run import AFTERWARDS, PRELUDE, ScenarioRun
+from robot_runtime.experiments.scenario.run import AFTERWARDS, PRELUDE, ScenarioRun, Unheard
 
 _SCENARIO = Path(robot_runtime.experiments.scenario.__file__).parent / "shipped/hover_in_a_current.toml"
-
-
-class _Deaf:
-    def blocks(self, data: bytes) -> None:
-        """Ignore the blocks."""
-
-    def event(self, event: str, **more: Any) -> None:
-        """Ignore the event."""
 
 
 def measure() -> dict[str, float]:
@@ -42,7 +33,7 @@ def _speeds(board: str, duration: float) -> tuple[float, float]:
     """Return the speeds by the processor's time, and by the wall's."""
     whole = read_scenario(_SCENARIO.read_text())
     events = tuple(event for event in whole.events if event.at <= duration)
-    run = ScenarioRun(replace(whole, duration=duration, events=events), boards()[board], _Deaf())
+    run = ScenarioRun(replace(whole, duration=duration, events=events), boards()[board], Unheard())
     began, wall = _processor_time(), time.monotonic()
     run.perform(lambda _: {})
     simulated = PRELUDE + duration + AFTERWARDS

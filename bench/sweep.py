@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from robot_runtime.experiments import scenario
 from robot_runtime.experiments.scenario.boards import BUILD, boards
 from robot_runtime.experiments.scenario.document import read_scenario_table
-from robot_runtime.experiments.scenario.run import ScenarioRun
+from robot_runtime.experiments.scenario.run import ScenarioRun, Unheard
 from robot_runtime.experiments.sweep.document import Sweep
 from server.features.sweeps.engine import SweepEngine
 from server.features.sweeps.executors import LocalWorkers, Workers
@@ -30,14 +30,6 @@ seeds = 2
 "control.gains.pid.kp" = [1.5, 3.0, 4.5]
 "control.gains.pid.kd" = [1.0, 2.0]
 """
-
-
-class _Deaf:
-    def blocks(self, data: bytes) -> None:
-        """Ignore the blocks."""
-
-    def event(self, event: str, **more: object) -> None:
-        """Ignore the event."""
 
 
 def measure() -> dict[str, float]:
@@ -76,7 +68,7 @@ def _one_by_one(tasks: list[RunTask]) -> float:
     """Return the s that these scenarios take by themselves, without any figures."""
     began = time.monotonic()
     for task in tasks:
-        ScenarioRun(read_scenario_table(dict(task.table)), boards()["host"], _Deaf()).perform(lambda _: {})
+        ScenarioRun(read_scenario_table(dict(task.table)), boards()["host"], Unheard()).perform(lambda _: {})
     return time.monotonic() - began
 
 

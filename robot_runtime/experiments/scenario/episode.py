@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from robot_runtime.contract.commands import ArmCommand, SetPointsCommand
 from robot_runtime.contract.craft import DEFAULT_DOCUMENT, CraftDocument
@@ -13,7 +13,7 @@ from robot_runtime.contract.topics import DEPTH, IMU, MOTOR
 from robot_runtime.experiments.scenario.document import Scenario
 from robot_runtime.experiments.scenario.events import CommandEvent, LineFaultChange, TimedEvent, WaterEvent
 from robot_runtime.experiments.scenario.rig import MakeBoard, ScenarioRig
-from robot_runtime.experiments.scenario.run import PRELUDE, RunLoop
+from robot_runtime.experiments.scenario.run import PRELUDE, RunLoop, Unheard
 from robot_runtime.simulation.water.parameters import Vector
 
 ARMING = 0.5
@@ -58,7 +58,7 @@ class Episode:
         self._events = [event for event in reversed(scenario.events) if _happens(event)]
         self._rig = ScenarioRig(scenario, make_board, lambda _: None, PRELUDE, own)
         self._robot = self._rig.robot
-        self._loop = RunLoop(self._rig, _Unheard(), lambda: False)
+        self._loop = RunLoop(self._rig, Unheard(), lambda: False)
         self._rows: dict[str, bytes] = {}
         for topic in (DEPTH, IMU, MOTOR):
             self._robot.bus.on_row(topic, partial(self._keep, topic.name))
@@ -136,16 +136,6 @@ class Episode:
 
     def _keep(self, name: str, _: float, record: bytes) -> None:
         self._rows[name] = record
-
-
-class _Unheard:
-    """The listener of a run that is not recorded."""
-
-    def blocks(self, data: bytes) -> None:
-        """Take nothing."""
-
-    def event(self, event: str, **more: Any) -> None:
-        """Receive nothing."""
 
 
 def _happens(event: TimedEvent) -> bool:

@@ -48,6 +48,16 @@ class RunListener(Protocol):
         ...
 
 
+class Unheard:
+    """The listener of a run of which nothing is kept."""
+
+    def blocks(self, data: bytes) -> None:
+        """Take nothing."""
+
+    def event(self, event: str, **more: Any) -> None:
+        """Receive nothing."""
+
+
 class ScenarioRun:
     """One run of a scenario on this kind of board; `perform` runs all of it. `craft` is the robot's."""
 
