@@ -25,7 +25,7 @@ RELEASED = Path(__file__).with_name("data")
 ARCHIVE, EXPECTED = "session.mucat.zip", "session.json"
 DATA, DATA_EXPECTED = "data.tar.gz", "data.json"
 LEFT_OUT = {"run", "logs", "reserve", "server.lock"}
-"""What a data folder has only while it is used, or without any content."""
+"""Names in a data folder that exist only while it is used, or have no content."""
 SIGNALS = ["depth.depth", "control.set_point", "truth.depth"]
 SCENARIO = """
 name = "released"

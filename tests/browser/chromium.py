@@ -30,7 +30,7 @@ SECRET = "mucat.page_secret"
 """The key under which the page stores its part of the sign-in."""
 GUIDE = "mucat-guide"
 NO_GUIDE = '{"shown":false}'
-"""What the page stores under this key once somebody wants no card of the first dive."""
+"""The page's entry of a browser that wants no card of the first dive."""
 DIVED = f"if (self === top && location.protocol !== 'about:') localStorage.setItem('{GUIDE}', '{NO_GUIDE}')"
 """A script of a browser whose person has dived before."""
 

@@ -30,7 +30,7 @@ LATER: list[dict[str, Any]] = [
     {"id": 77, "name": "sonar", "meaning": "echoes", "kind": "documents", "fields": [{"name": "time"}]},
     {"id": 78, "name": "smell", "meaning": "unknown", "kind": "scent", "fields": []},
 ]
-"""As a later version might describe its topics."""
+"""Topics as a later version might describe them."""
 DEPTH_ROW = Struct("<dBBi")
 
 

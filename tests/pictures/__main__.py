@@ -33,7 +33,7 @@ SHOWN = """() => [...document.images].every((one) => {
     const { left, top } = one.getBoundingClientRect();
     return one.complete || left > innerWidth || top > innerHeight;
 })"""
-"""Whether all pictures in the window are there; others are fetched when they come into it."""
+"""True once all pictures in the window are loaded; others are fetched when they come into it."""
 DRAWN = "() => [...document.querySelectorAll('.js-plotly-plot')].every((one) => one.querySelector('svg'))"
 CHARTS_MILLISECONDS = 1500
 """With reduced motion charts are drawn anew once a second."""

@@ -93,7 +93,7 @@ PICTURES = (
     ManualPicture(name="lab-robots", stage="lab", address="robots"),
     ManualPicture(name="lab-figures", stage="lab", address="figures?by=controller", act=views.await_figures),
 )
-"""Those of one stage and state stand together: the robot goes through its states in this order."""
+"""All pictures of the page, by stage and state: the robot goes through its states in this order."""
 SCENE, FILM = "scene", "film"
-"""What is rendered without a page, and the film with its poster."""
+"""Names of the picture that is rendered without a page, and of the film with its poster."""
 ALL = (*(picture.name for picture in PICTURES), SCENE, FILM)
