@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import cv2
+import numpy as np
 import psutil
 
 from bench import jitter
@@ -24,17 +26,21 @@ _SECONDS = 40.0
 _SETTLE = 5.0
 _PATIENCE = HUNG_SECONDS + 20.0
 _MISSING = "no picture: "
+_HUGE = 9000
+"""px; a decoder needs more than one such picture's 243 MB."""
 
 Phases = dict[str, tuple[float, float]]
 
 
 def measure() -> dict[str, float]:
     """Return the ms by which the time between two control ticks differs from their period, p50 and p999, of
-    phases: without a fault, with a vision process that crashes whenever it gives pictures, that hangs, whose
-    memory is exhausted, and with a video that crashes OpenCV's decoder whenever it is opened. s until the
-    camera's state names the first fault of a phase, until the alarm, and until pictures come again.
+    phases: without a fault, with a vision process that crashes whenever it gives pictures, that hangs, with a
+    video that crashes OpenCV's decoder whenever it is opened, and with one whose pictures are larger than the
+    process's memory. s until the camera's state names the first fault of a phase, until the alarm, and until
+    pictures come again.
     """
-    return _with_faults() | _with_video()
+    uncompressed = _with_video("video", uncompressed_video(), "crashed the decoder")
+    return _with_faults() | uncompressed | _with_video("eating", _huge_video(), "needed more memory")
 
 
 def _with_faults() -> dict[str, float]:
@@ -44,17 +50,28 @@ def _with_faults() -> dict[str, float]:
             swim.phase("well", lambda: 0)
             swim.phase("crashing", lambda: swim.fault("crash", _crash))
             swim.phase("hanging", lambda: swim.fault("hang", psutil.Process.suspend))
-            swim.phase("eating", lambda: swim.fault("memory", _exhaust))
         return swim.figures()
 
 
-def _with_video() -> dict[str, float]:
+def _with_video(phase: str, content: bytes, failure: str) -> dict[str, float]:
+    """Show a video all the time, whose `failure` the camera's state names."""
     with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
-        video = Path(folder) / "uncompressed.avi"
-        video.write_bytes(uncompressed_video())
+        video = Path(folder) / "video.avi"
+        video.write_bytes(content)
         with _Swim(Path(folder) / "data", f'camera = "file"\nfile = "{video}"') as swim:
-            swim.phase("video", lambda: 0)
+            swim.phase(phase, lambda: 0)
+            wait_for(lambda: failure in swim.camera, f"the camera's state: {failure}", _PATIENCE)
         return swim.figures()
+
+
+def _huge_video() -> bytes:
+    """Return a video of one black picture, 243 MB as pixels and 0.5 MB as a file."""
+    with tempfile.TemporaryDirectory(prefix="mucat-") as folder:
+        file = Path(folder) / "huge.avi"
+        writer = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*"MJPG"), 4, (_HUGE, _HUGE))
+        writer.write(np.zeros((_HUGE, _HUGE, 3), np.uint8))
+        writer.release()
+        return file.read_bytes()
 
 
 class _Swim:
@@ -116,8 +133,13 @@ class _Swim:
         figures = jitter.figures(self._data, self._session, self._phases)
         return {name.replace("jitter.", "decoder."): value for name, value in figures.items()} | self._figures
 
+    @property
+    def camera(self) -> str:
+        """The camera's description in the robot's newest state."""
+        return str(self._viewer.state.get("camera", ""))
+
     def _is_named(self) -> bool:
-        return str(self._viewer.state.get("camera", "")).startswith(_MISSING)
+        return self.camera.startswith(_MISSING)
 
     def _is_back(self, since: float) -> bool:
         return not self._is_named() and self._viewer.fresh(("detection",), since)
@@ -125,9 +147,3 @@ class _Swim:
 
 def _crash(vision: psutil.Process) -> None:
     os.kill(vision.pid, signal.SIGSEGV)
-
-
-def _exhaust(vision: psutil.Process) -> None:
-    """Have the next allocation of the process fail."""
-    _, hard = vision.rlimit(psutil.RLIMIT_DATA)
-    vision.rlimit(psutil.RLIMIT_DATA, (1_000_000, hard))

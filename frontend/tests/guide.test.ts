@@ -56,6 +56,12 @@ describe('a step of the first dive', () => {
     expect(neededFor('story', SURFACE)).toBe('story');
   });
 
+  it('begins with acknowledging where a failsafe bars arming', () => {
+    const failsafe = inState({ mode: 'failsafe' });
+    const needed = STEP_NAMES.filter((name) => neededFor(name, failsafe) === 'acknowledge');
+    expect(needed).toEqual(['dive', 'card', 'controller', 'mark', 'mission']);
+  });
+
   it('stands in the tutorial under the same title, in the same order, and names the same controls', () => {
     const tutorial = readFileSync(new URL('../../docs/use/tutorial.md', import.meta.url), 'utf8');
     const [, ...chapters] = tutorial.split(/^## \d+\. /m);

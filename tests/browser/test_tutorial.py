@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, StorageState, expect
+from playwright.sync_api import Browser, ElementHandle, Page, StorageState, expect
 
 from tests.browser.axe import AXE, faults_in_both_themes
 from tests.browser.chromium import GUIDE
@@ -12,7 +12,6 @@ from tests.browser.opening import DESKTOP, opened_page
 from tests.stack import Stack
 
 STEPS = 10
-OUTLINED = "[data-guided]"
 
 
 class Walker:
@@ -24,43 +23,50 @@ class Walker:
 
     def walk(self, number: int) -> None:
         """Do the step of this number, from 1 on."""
-        expect(self.card).to_contain_text(f"{number} of {STEPS}")
+        count = f"{number} of {STEPS}"
+        expect(self.card).to_contain_text(count)
         keys = self.card.locator("strong", has_text=re.compile(r"^[A-Z]$"))
         if keys.count():
             self._page.keyboard.press(keys.inner_text().lower())
-            self._page.evaluate(f"window.pressed = document.querySelector('{OUTLINED}')")
-        while (control := self._next(number)) is not None:
-            self._press(control)
+            expect(self.card).not_to_contain_text(count)
+        else:
+            while (way := self._next(count)) != "ticked":
+                self._press(way)
 
-    def _next(self, number: int) -> Locator | None:
-        """Return what is outlined now and has not been pressed yet; None once the step is ticked."""
-        self._page.wait_for_function(
-            """([outlined, count]) => {
-                const control = document.querySelector(outlined);
+    def _next(self, count: str) -> str:
+        """Return how to press what is outlined now and has not been pressed yet: "hold", "click", or the
+        option of a list that the card names; "ticked" once the step is.
+
+        Card and control are looked at in one moment: the step may be ticked in the next.
+        """
+        way = self._page.wait_for_function(
+            """count => {
                 const card = document.querySelector('section[aria-label="First dive"]');
-                if (!card.textContent.includes(count)) return true;
-                return control && control !== window.pressed && !control.ariaDisabled?.includes('true');
+                if (!card.textContent.includes(count)) return 'ticked';
+                const control = document.querySelector('[data-guided]');
+                if (!control || control === window.pressed || control.ariaDisabled === 'true') return null;
+                const named = [...card.querySelectorAll('strong')].map(name => name.textContent);
+                const options = [...control.options ?? []].map(option => option.text);
+                const way = control.localName === 'select' ? options.find(option => named.includes(option))
+                    : control.classList.contains('hold') ? 'hold' : 'click';
+                if (way) window.pressed = control;
+                return way;
             }""",
-            arg=[OUTLINED, f"{number} of {STEPS}"],
+            arg=count,
         )
-        ticked = f"{number} of {STEPS}" not in self.card.inner_text()
-        return None if ticked else self._page.locator(OUTLINED)
+        return str(way.json_value())
 
-    def _press(self, control: Locator) -> None:
-        control.evaluate("control => { window.pressed = control }")
-        if control.evaluate("control => control.localName") == "select":
-            (choice,) = [
-                name
-                for name in self.card.locator("strong").all_inner_texts()
-                if control.locator("option", has_text=re.compile(f"^{name}$")).count()
-            ]
-            control.select_option(choice)
-        elif control.inner_text().startswith("Hold to"):
+    def _press(self, way: str) -> None:
+        control = self._page.evaluate_handle("window.pressed").as_element()
+        assert control is not None
+        if way == "click":
+            control.click()
+        elif way == "hold":
             self._hold(control)
         else:
-            control.click()
+            control.select_option(label=way)
 
-    def _hold(self, control: Locator) -> None:
+    def _hold(self, control: ElementHandle) -> None:
         """Hold it until it is answered. Where the robot refuses, it is held again, as a person does."""
         with self._page.expect_response(re.compile("/(arm|start)$"), timeout=1000 * HOLD_SECONDS) as answered:
             control.hover()

@@ -24,11 +24,14 @@ export interface Situation {
   readonly exports: readonly ExportJob[];
 }
 
-interface Step {
+interface Place {
   /** null where it can be done on every page */
   readonly page: PageName | null;
   /** selectors of what is pressed for it: the first that is there is next */
   readonly controls: readonly string[];
+}
+
+interface Step extends Place {
   /** whether it needs an armed robot */
   readonly armed?: true;
   readonly done: (now: Situation) => boolean;
@@ -36,6 +39,8 @@ interface Step {
 
 export const STEP_NAMES = ['look', 'dive', 'card', 'controller', 'mark', 'stop', 'mission', 'story', 'compare', 'export'] as const;
 export type StepName = (typeof STEP_NAMES)[number];
+/** What is to be done now: a step, or what it needs first. */
+export type Task = StepName | 'acknowledge';
 
 /** m from which on it has dived */
 const DIVED = 0.3;
@@ -104,22 +109,28 @@ export const STEPS: Readonly<Record<StepName, Step>> = {
   },
 };
 
+/** After a failsafe nothing arms before somebody has acknowledged it. */
+const ACKNOWLEDGE: Place = { page: 'operate', controls: ['.failsafe ~ .button'] };
+const placeOf = (task: Task): Place => (task === 'acknowledge' ? ACKNOWLEDGE : STEPS[task]);
+export const pageOf = (task: Task): PageName | null => placeOf(task).page;
+
 /** How many steps are done as things stand, of which so many were done before: the next one counts, and no later one. */
 export function doneNow(before: number, now: Situation): number {
   const name = STEP_NAMES[before];
   return name !== undefined && STEPS[name].done(now) ? before + 1 : before;
 }
 
-/** The step whose control is to be pressed for this one: who was disarmed meanwhile dives first. */
-export function neededFor(name: StepName, { state }: Situation): StepName {
-  return STEPS[name].armed === true && state?.armed === false ? 'dive' : name;
+/** What is to be done for this step: who was disarmed meanwhile dives first, and who was stopped by a failsafe acknowledges it. */
+export function neededFor(name: StepName, { state }: Situation): Task {
+  const step = STEPS[name].armed === true && state?.armed === false ? 'dive' : name;
+  return state?.mode === 'failsafe' && (step === 'dive' || step === 'mission') ? 'acknowledge' : step;
 }
 
-/** The control to press on this page, where it is there: of the step itself, or the tab of the page that has it. */
-export function controlOf(name: StepName, page: PageName, within: ParentNode): HTMLElement | null {
-  const step = STEPS[name];
-  const here = step.page === null || step.page === page;
-  for (const selector of here ? step.controls : [`.tab[href="#/${step.page}"]`]) {
+/** The control to press on this page, where it is there: of the task itself, or the tab of the page that has it. */
+export function controlOf(task: Task, page: PageName, within: ParentNode): HTMLElement | null {
+  const place = placeOf(task);
+  const here = place.page === null || place.page === page;
+  for (const selector of here ? place.controls : [`.tab[href="#/${place.page}"]`]) {
     const found = within.querySelector<HTMLElement>(selector);
     if (found !== null) return found;
   }

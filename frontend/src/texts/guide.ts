@@ -67,6 +67,10 @@ export const guide = {
       robot: SAME,
     },
   },
+  acknowledge: {
+    text: 'The robot stopped by itself. On the page **Operate**, read why, and press **Acknowledge**.',
+    robot: 'see to the cause first.',
+  },
   disarmed: 'The robot is disarmed.',
   finished: {
     title: 'You have dived',
