@@ -1,7 +1,7 @@
 """`python -m tests.pictures [NAME...]`: take the manual's pictures and the film, or some of them."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import groupby
 from pathlib import Path
@@ -14,11 +14,11 @@ from tests.browser.opening import launched
 from tests.browser.pages import settle
 from tests.browser.people import somebody
 from tests.browser.site import Site
+from tests.pictures.calm import find_alarms, take_calm
 from tests.pictures.film import make_film
 from tests.pictures.manual import ALL, FILM, LIT, PICTURES, SCENE, SIZES, ManualPicture
-from tests.pictures.recordings import record_all
 from tests.pictures.scene import write_scene
-from tests.pictures.stages import RECORDED, name_numbers, open_stage
+from tests.pictures.stages import RECORDED, name_numbers, open_stage, record_past
 from tests.pictures.states import State, rest
 from tests.stack import ROOT, Stack
 from tests.waiting import SECONDS
@@ -45,22 +45,40 @@ def take_all(browser: Browser, pictures: tuple[ManualPicture, ...], scratch: Pat
         with open_stage(stage, scratch) as site:
             numbers = name_numbers(site)
             for state, same in groupby(group, lambda picture: picture.state):
-                with in_state(browser, site, state):
+                with in_state(browser, site, state) as find_alarms_anew:
                     for picture in same:
-                        take(browser, site, picture, numbers, out / f"{picture.name}.jpg")
+                        file = out / f"{picture.name}.jpg"
+
+                        def take_one() -> list[str]:
+                            take(browser, site, picture, numbers, file)  # noqa: B023 - it is called here
+                            return find_alarms_anew()
+
+                        take_calm(take_one)
 
 
 @contextmanager
-def in_state(browser: Browser, site: Site, state: State) -> Iterator[None]:
-    """Bring the robot into this state, where there is one that swims, and to rest again."""
+def in_state(browser: Browser, site: Site, state: State) -> Iterator[Callable[[], list[str]]]:
+    """Bring the robot into this state, where there is one that swims, and to rest again.
+
+    Yield a function that returns the alarms that stand, and in that case brings it into the state anew.
+    """
     if not isinstance(site, Stack):
-        yield
+        yield list
         return
     # A viewer, who leaves control to the pages that are shown.
     with somebody(browser, site, "viewer") as watcher:
-        rest(site, watcher)
-        state(site, watcher)
-        yield
+
+        def begin() -> None:
+            rest(site, watcher)
+            state(site, watcher)
+
+        def find_alarms_anew() -> list[str]:
+            if alarms := find_alarms(site):
+                begin()
+            return alarms
+
+        begin()
+        yield find_alarms_anew
         rest(site, watcher)
 
 
@@ -97,30 +115,26 @@ def draw(page: Page) -> None:
     page.wait_for_timeout(CHARTS_MILLISECONDS)
 
 
-def take_chosen(chosen: tuple[ManualPicture, ...]) -> None:
-    """Take these pictures into the manual's folder."""
-    with TemporaryDirectory(prefix="mucat-") as folder:
-        scratch = Path(folder)
-        if any(picture.stage != "robot" for picture in chosen):
-            # Where no event loop runs yet.
-            record_all(scratch / RECORDED, scratch / "documents")
-        with launched() as browser:
-            take_all(browser, chosen, scratch, PICTURES_FOLDER)
-
-
 def main(names: list[str]) -> None:
-    """Make those of these names, or all."""
+    """Make those of these names, or all, into the manual's folder."""
     unknown = {*names} - {*ALL}
     if unknown:
         sys.exit(f"There is no {', '.join(sorted(unknown))}. There are: {', '.join(ALL)}")
     expect.set_options(timeout=1000 * SECONDS)
     selected = names or ALL
-    if chosen := tuple(picture for picture in PICTURES if picture.name in selected):
-        take_chosen(chosen)
+    chosen = tuple(picture for picture in PICTURES if picture.name in selected)
     if SCENE in selected:
         write_scene(PICTURES_FOLDER / f"{SCENE}.jpg", QUALITY)
-    if FILM in selected:
-        make_film(DOCS / f"{FILM}.mp4", PICTURES_FOLDER / f"{FILM}.jpg")
+    with TemporaryDirectory(prefix="mucat-") as folder:
+        scratch = Path(folder)
+        if FILM in selected or any(picture.stage != "robot" for picture in chosen):
+            # Where no event loop runs yet.
+            record_past(scratch)
+        if chosen:
+            with launched() as browser:
+                take_all(browser, chosen, scratch, PICTURES_FOLDER)
+        if FILM in selected:
+            make_film(scratch / RECORDED, DOCS / f"{FILM}.mp4", PICTURES_FOLDER / f"{FILM}.jpg")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ from base64 import b64decode
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import av
@@ -17,10 +16,10 @@ from playwright.sync_api import Locator, Page, ViewportSize, expect
 from tests.browser.chromium import sign_in
 from tests.browser.driving import hold_to_arm, wait_for_depth
 from tests.browser.opening import launched
-from tests.pages.dive_site import DiveSite
+from tests.pictures.calm import find_alarms, take_calm
 from tests.pictures.manual import LIT
-from tests.pictures.recordings import compute_all, record_all
-from tests.pictures.stages import RECORDED, name_numbers
+from tests.pictures.stages import name_numbers
+from tests.pictures.views import STREAMED
 from tests.stack import Stack
 from tests.waiting import wait_for
 
@@ -100,8 +99,8 @@ class Screencast:
         self._chromium.send("Page.screencastFrameAck", {"sessionId": event["sessionId"]})
 
 
-def play(page: Page, stack: Stack, camera: Screencast) -> None:
-    """Dive, look at the recording, and at a sweep."""
+def play(page: Page, stack: Stack, camera: Screencast) -> list[str]:
+    """Dive, look at the recording, and at a sweep. Where the dive has alarms, end and return them."""
 
     def wait(seconds: float) -> None:
         page.wait_for_timeout(1000 * seconds)
@@ -128,16 +127,17 @@ def play(page: Page, stack: Stack, camera: Screencast) -> None:
         wait(CAPTION_SECONDS)
         press(page, page.get_by_role("button", name="STOP"))
         wait(4)
+    if alarms := find_alarms(stack):
+        return alarms
     page.goto(f"{stack.url}/#/operate")
     wait_for_depth(page, -0.1, 0.1)
-    (session,) = [
-        document for document in stack.api.get("/sessions").json() if document["origin"] == "arming"
-    ]
-    wait_for(
-        lambda: stack.api.get(f"/sessions/{session['id']}").json()["state"] == "complete",
-        "the recording's end",
+    session = max(
+        document["id"] for document in stack.api.get("/sessions").json() if document["origin"] == "arming"
     )
-    page.goto(f"{stack.url}/#/sessions/{session['id']}")
+    wait_for(
+        lambda: stack.api.get(f"/sessions/{session}").json()["state"] == "complete", "the recording's end"
+    )
+    page.goto(f"{stack.url}/#/sessions/{session}")
     curve = page.get_by_role("slider", name="Depth over time")
     expect(curve).to_be_visible()
     wait(CAPTION_SECONDS)
@@ -155,6 +155,7 @@ def play(page: Page, stack: Stack, camera: Screencast) -> None:
         wait(2)
     with camera.shot("No robot needed:  make run"):
         wait(3)
+    return []
 
 
 def point(page: Page, target: Locator) -> None:
@@ -202,22 +203,23 @@ def write_poster(camera: Screencast, file: Path) -> None:
     cv2.imwrite(str(file), poster, [cv2.IMWRITE_JPEG_QUALITY, 80])
 
 
-def make_film(file: Path, poster: Path) -> None:
-    """Dive, and write what is seen."""
-    with TemporaryDirectory(prefix="mucat-") as folder:
-        data = Path(folder) / RECORDED
-        record_all(data, Path(folder) / "documents")
-        with DiveSite(data) as site:
-            compute_all(site.api)
-        camera = record(data)
-        write_film(camera, file)
-        write_poster(camera, poster)
-    seconds = sum(end - begin for begin, end in camera.shots)
-    print(f"{file}: {seconds:.0f} s, {file.stat().st_size / 1e6:.1f} MB")  # noqa: T201 - it is run from a shell
+def make_film(data: Path, file: Path, poster: Path) -> None:
+    """Dive on a robot with this data folder, and write what is seen."""
+
+    def take() -> list[str]:
+        camera, alarms = record(data)
+        if not alarms:
+            write_film(camera, file)
+            write_poster(camera, poster)
+            seconds = sum(end - begin for begin, end in camera.shots)
+            print(f"{file}: {seconds:.0f} s, {file.stat().st_size / 1e6:.1f} MB")  # noqa: T201 - it is run from a shell
+        return alarms
+
+    take_calm(take)
 
 
-def record(data: Path) -> Screencast:
-    """Play it on a robot with this data folder, and return all that was seen."""
+def record(data: Path) -> tuple[Screencast, list[str]]:
+    """Play it on a robot with this data folder; return all that was seen, and the dive's alarms."""
     with Stack(data) as stack, launched() as browser:
         context = browser.new_context(viewport=WINDOW, color_scheme="dark")
         sign_in(context, stack.url, stack.data)
@@ -225,7 +227,7 @@ def record(data: Path) -> Screencast:
         page = context.new_page()
         page.goto(f"{stack.url}/#/operate")
         expect(page.get_by_role("button", name="Control: you have control")).to_be_visible()
+        page.wait_for_function(STREAMED)
         page.evaluate(CAPTIONED)
         camera = Screencast(page)
-        play(page, stack, camera)
-    return camera
+        return camera, play(page, stack, camera)

@@ -38,13 +38,20 @@ class ManualPicture:
 
 PICTURES = (
     ManualPicture(name="first-dive", stage="robot", address="operate", act=views.be_guided),
-    ManualPicture(name="panels", stage="robot", address="operate", size="screen", act=views.arrange_panels),
     ManualPicture(name="tune-parameters", stage="robot", address="tune/parameters"),
     ManualPicture(
         name="operate", stage="robot", address="operate", state=states.swim, size="screen", act=views.see
     ),
     ManualPicture(
         name="operate-phone", stage="robot", address="operate", state=states.swim, size="phone", act=views.see
+    ),
+    ManualPicture(
+        name="panels",
+        stage="robot",
+        address="operate",
+        state=states.swim,
+        size="screen",
+        act=views.arrange_panels,
     ),
     ManualPicture(name="flight", stage="robot", address="flight", state=states.swim, act=views.see),
     ManualPicture(

@@ -10,7 +10,7 @@ from tests.browser.site import Site
 from tests.pages.dive_site import DiveSite
 from tests.pages.lab_site import SWIMMING, LabSite, presence
 from tests.pictures.manual import Stage
-from tests.pictures.recordings import compute_all, find_sessions
+from tests.pictures.recordings import compute_all, find_sessions, record_all
 from tests.stack import Stack
 
 RECORDED = "recorded"
@@ -23,13 +23,19 @@ NAMES = {
 ROBOTS = {"turtle-1": SWIMMING, "turtle-2": presence(battery=8.1)}
 
 
+def record_past(scratch: Path) -> None:
+    """Fill the folder of recordings in `scratch`."""
+    record_all(scratch / RECORDED, scratch / "documents")
+    with DiveSite(scratch / RECORDED) as site:
+        compute_all(site.api)
+
+
 @contextmanager
 def open_stage(stage: Stage, scratch: Path) -> Iterator[Site]:
     """The server of this stage, in a folder of `scratch`, where another one has the recordings."""
     match stage:
         case "desk":
             with DiveSite(scratch / RECORDED) as site:
-                compute_all(site.api)
                 yield site
         case "robot":
             with Stack(scratch / "robot") as stack:
