@@ -43,7 +43,8 @@ case "${{installed##*/}}" in
 esac
 """
 REMOVE = """#!/bin/sh
-# Removes services and software; data and configuration stay until the package is purged.
+# Removes services and software; data and configuration stay until the package is purged. An armed robot is
+# refused by the uninstaller, and its status ends dpkg's work.
 set -e
 test "$1" = remove || exit 0
 test ! -x {command} || {command} uninstall
@@ -51,6 +52,8 @@ test ! -x {command} || {command} uninstall
 PURGE = """#!/bin/sh
 set -e
 test "$1" = purge || exit 0
+# Installed again by other means than this package.
+test ! -x {command} || {command} uninstall
 rm -rf {software} {settings} {data} {report} {lock}
 if getent passwd mucat >/dev/null; then userdel mucat; fi
 """

@@ -72,6 +72,16 @@ def test_a_lab_is_a_package_of_its_own(tmp_path: Path) -> None:
     assert "install.sh --lab" in (tmp_path / "control/postinst").read_text()
 
 
+def test_an_armed_robot_is_not_removed(tmp_path: Path) -> None:
+    ask("--control", build(tmp_path, "x86_64", "3.11"), tmp_path / "control")
+    command = tmp_path / "mucat"
+    command.write_text('#!/bin/sh\ntest "$*" = uninstall && echo "The robot is armed." >&2\nexit 1\n')
+    command.chmod(0o755)
+    script = (tmp_path / "control/prerm").read_text().replace("/usr/local/bin/mucat", str(command))
+    done = subprocess.run(["sh", "-s", "remove"], input=script, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, "The robot is armed.\n")
+
+
 def test_its_scripts_do_nothing_but_at_their_moment(tmp_path: Path) -> None:
     ask("--control", build(tmp_path, "x86_64", "3.11"), tmp_path / "control")
     for script, moment in (("postinst", "abort-upgrade"), ("prerm", "upgrade"), ("postrm", "remove")):

@@ -70,6 +70,13 @@ def try_all(container: SystemdContainer) -> int:
     steps.take("install", f"dpkg -i /releases/{FIRST}", f"µ-CAT {VERSION} runs")
     steps.wait("it is armed", lambda: container.order(ask_server(ARM))[0] == 0)
     print(f"     {time.monotonic() - began:.0f} s from nothing to an armed robot", flush=True)
+    for name, order in (
+        ("remove", "dpkg -r mucat"),
+        ("purge", "dpkg -P mucat"),
+        ("uninstall", "mucat uninstall"),
+    ):
+        steps.take(f"{name} the armed robot", order, "The robot is armed", status=1)
+    steps.runs(VERSION)
     steps.take("disarm", ask_server(STOP), "")
     steps.runs(VERSION)
     take_over_data(steps)

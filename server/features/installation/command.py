@@ -100,7 +100,10 @@ def rollback(*, cut_off: bool) -> None:
 @click.command()
 @click.option("--dry-run", is_flag=True, help="Say what would be done, and do nothing.")
 def uninstall(*, dry_run: bool) -> None:
-    """Remove the services and the software; the data stay."""
+    """Remove the services and the software; the data stay.
+
+    It is refused while the robot is armed or a session is recorded.
+    """
     places = InstallPlaces()
     _require_root("uninstall", dry=dry_run)
     installer = Installer(places, Effects(echo, dry=dry_run), lambda _: False)

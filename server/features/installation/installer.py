@@ -179,8 +179,9 @@ class Installer:
         wait_until_healthy(self._effects, self._places, FIRST_START_SECONDS)
 
     def uninstall(self) -> None:
-        """Remove services and software; data, configuration and user stay."""
+        """Remove services and software; data, configuration and user stay. Raise SetupError."""
         effects, places = self._effects, self._places
+        refuse_in_use(effects, places)
         names = list(write_units(places))
         there = [name for name in names if (places.units / name).exists()]
         if there:

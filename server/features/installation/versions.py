@@ -47,14 +47,19 @@ def refuse_in_use(effects: Effects, places: InstallPlaces) -> None:
         # It cannot even look at itself: an update may be what mends it.
         survey = Survey(problem=str(failure))
     if survey.armed:
-        raise SetupError("The robot is armed. Disarm it first; nothing was changed.")
+        raise SetupError(
+            "The robot is armed, and this ends its runtime: the fins would stop where it swims. "
+            "Disarm it first (Disarm or STOP on the page); nothing was changed."
+        )
     if survey.armed is None and "runtime" in running_parts(DataFolder(places.data).run):
         raise SetupError(
             f"The robot may be armed: {survey.problem} If you see that it is not, end its runtime: "
             "sudo systemctl stop mucat-runtime. Nothing was changed."
         )
     if survey.recording:
-        raise SetupError("A session is being recorded. Stop it first; nothing was changed.")
+        raise SetupError(
+            "A session is being recorded. Stop it first (mucat record stop); nothing was changed."
+        )
 
 
 def list_wrong(effects: Effects, places: InstallPlaces, environment: Path) -> dict[str, str]:

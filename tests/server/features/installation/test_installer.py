@@ -162,6 +162,24 @@ def test_an_armed_robot_is_not_restarted(tmp_path: Path, release: Path) -> None:
     assert not any(command.startswith("systemctl") for command in computer.commands)
 
 
+def test_an_armed_robot_is_not_removed(tmp_path: Path, release: Path) -> None:
+    computer = UpdatableComputer(tmp_path / "pi")
+    install(computer, release)
+    before = computer.tree()
+    computer.commands.clear()
+    computer.armed = True
+    with pytest.raises(SetupError, match=r"The robot is armed, and this ends its runtime.* STOP on the page"):
+        computer.installer(computer.effects()).uninstall()
+    computer.armed, computer.recording = False, True
+    with pytest.raises(SetupError, match="mucat record stop"):
+        computer.installer(computer.effects()).uninstall()
+    assert computer.tree() == before
+    assert not any(command.startswith("systemctl") for command in computer.commands)
+    computer.recording = False
+    computer.installer(computer.effects()).uninstall()
+    assert not computer.places.software.exists()
+
+
 def test_a_dry_run_says_all_and_changes_nothing(tmp_path: Path, release: Path) -> None:
     computer = Computer(tmp_path / "pi")
     before = computer.tree()

@@ -71,7 +71,7 @@ REFUSED: dict[str, tuple[Callable[[Path, UpdatableComputer], None], str]] = {
     "an armed robot": (armed, "Disarm it first"),
     "a server that does not answer": (silent, "may be armed: No server works on it"),
     "a version that cannot look at itself": (without_a_survey, "may be armed: runuser failed .* Killed"),
-    "a recording": (recording, "Stop it first"),
+    "a recording": (recording, "Stop it first .mucat record stop."),
     "a new fault": (without_a_library, r"OpenCV cannot be loaded\. Nothing was changed"),
     "another architecture": (for_another_computer, "no wheel of numpy"),
     "the version in use": (in_use, "in use already"),
