@@ -4,7 +4,6 @@ It carries the release's folder; its scripts call the release's own installer, t
 use, and the uninstaller. What is installed is the same as by `install.sh`.
 """
 
-import os
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
@@ -69,8 +68,8 @@ def build_debian_package(release: Path, machine: str, python: str, *, lab: bool 
     with TemporaryDirectory(dir=release.parent) as name:
         root = Path(name)
         root.chmod(0o755)
-        # Hard links: a release has some 300 MB.
-        shutil.copytree(release, root / FOLDER, copy_function=os.link)
+        # Copies, since the modes are the package's own.
+        shutil.copytree(release, root / FOLDER, copy_function=shutil.copyfile)
         for file in (root / FOLDER).iterdir():
             file.chmod(0o644)
         _add_licence(root, _name(lab=lab))

@@ -38,6 +38,11 @@ def test_it_carries_the_release_for_everybody_to_read(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == ["mucat-7.8.9-computer"]
 
 
+def test_the_release_s_own_files_stay_as_they_are(tmp_path: Path) -> None:
+    build(tmp_path, "x86_64", "3.11")
+    assert {file.stat().st_mode & 0o777 for file in (tmp_path / "mucat-7.8.9-computer").iterdir()} == {0o600}
+
+
 @pytest.mark.parametrize(
     ("machine", "python", "architecture", "depends"),
     [
