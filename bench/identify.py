@@ -9,7 +9,6 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import redirect_stdout
 from dataclasses import dataclass
-from importlib.resources import files
 from io import StringIO
 from pathlib import Path
 
@@ -18,9 +17,9 @@ import tomli_w
 
 from bench.measurement import MeasurementError
 from robot_runtime.contract.craft import Craft, craft_table
-from robot_runtime.experiments import scenario
 from robot_runtime.experiments.identification.identify import identify
 from robot_runtime.experiments.identification.streams import SessionStreams
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from server.cli import main
 from server.features.identification.sessions import read_streams
 from server.platform.settings import DataFolder
@@ -47,7 +46,7 @@ class _Found:
 
 def _record(craft: Craft, first_seed: int) -> list[SessionStreams]:
     """Return the streams of the sea trials of this craft."""
-    trial = (files(scenario) / "shipped" / "sea_trial.toml").read_text(encoding="utf-8")
+    trial = shipped_scenarios()["sea_trial"]
     with tempfile.TemporaryDirectory(prefix="mucat-") as name:
         folder, data = Path(name), DataFolder(Path(name) / "data")
         (folder / "true.toml").write_text(tomli_w.dumps({"title": "True", "craft": craft_table(craft)}))

@@ -7,12 +7,11 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager
-from importlib.resources import files
 from tempfile import TemporaryDirectory
 
-from robot_runtime.experiments import scenario
 from robot_runtime.experiments.scenario.boards import BUILD, boards
 from robot_runtime.experiments.scenario.document import read_scenario_table
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from robot_runtime.experiments.scenario.run import ScenarioRun, Unheard
 from robot_runtime.experiments.sweep.document import Sweep
 from server.features.sweeps.engine import SweepEngine
@@ -52,7 +51,7 @@ def measure() -> dict[str, float]:
 
 
 def _read() -> Sweep:
-    text = (files(scenario) / "shipped" / "hover_in_a_current.toml").read_text(encoding="utf-8")
+    text = shipped_scenarios()["hover_in_a_current"]
     return reopen(_TEXT, text)
 
 

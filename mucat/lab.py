@@ -8,7 +8,8 @@ from typing import Any
 
 from mucat.address import RobotAddress
 from mucat.errors import RobotError
-from mucat.tables import load_package, typed_column
+from mucat.packages import load_package
+from mucat.tables import typed_column
 
 POLL_SECONDS = 0.5
 DONE = ("complete", "cancelled", "failed", "interrupted")

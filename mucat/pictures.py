@@ -3,6 +3,7 @@
 from typing import Any
 
 from mucat.errors import RobotError
+from mucat.packages import load_package
 
 
 def decode_picture(jpeg: bytes) -> Any:
@@ -10,14 +11,7 @@ def decode_picture(jpeg: bytes) -> Any:
 
     Raise RobotError where it is no picture, or OpenCV is missing.
     """
-    try:
-        import cv2
-        import numpy
-    except ImportError as problem:
-        raise RobotError(
-            "A picture as an array needs the package opencv-python-headless: "
-            "pip install opencv-python-headless"
-        ) from problem
+    cv2, numpy = load_package("cv2", "opencv-python-headless"), load_package("numpy")
     picture = cv2.imdecode(numpy.frombuffer(jpeg, numpy.uint8), cv2.IMREAD_COLOR)
     if picture is None:
         raise RobotError("This is no picture: it cannot be decoded.")

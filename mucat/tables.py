@@ -4,10 +4,10 @@ import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from importlib import import_module
 from typing import Any, NamedTuple
 
 from mucat.errors import RobotError
+from mucat.packages import load_package
 
 MICROSECOND = 1e-6
 
@@ -58,14 +58,6 @@ class SessionTables:
         if topic not in self._readers:
             raise RobotError(f"The session has no topic {topic}; it has {', '.join(self._readers)}.")
         return self._readers[topic]()
-
-
-def load_package(name: str) -> Any:
-    """Return a package that not everybody has. Raise RobotError where it is not installed."""
-    try:
-        return import_module(name)
-    except ImportError as problem:
-        raise RobotError(f"A table needs the package {name}: pip install {name}") from problem
 
 
 def si_column(name: str, unit: str, values: Sequence[Any]) -> tuple[str, str, Sequence[Any]]:

@@ -5,7 +5,6 @@ Nothing in it depends on the computer's clock: the same seed and actions give th
 
 from collections.abc import Iterator
 from dataclasses import replace
-from importlib.resources import files
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from robot_runtime.contract.packets import Depth, Imu, Motor
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import DURATION, SEED, Scenario, read_scenario
 from robot_runtime.experiments.scenario.episode import START, STEP, Episode, EpisodeState
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 """The numbers of an action: shares of the greatest force and torque; forward, to the right, down."""
@@ -104,12 +104,11 @@ class ScenarioEnvironment(Env[Numbers, Numbers]):
 def _read(scenario: str, duration: float | None) -> Scenario:
     text = scenario
     if "\n" not in scenario:
-        file = files("robot_runtime.experiments.scenario") / "shipped" / f"{scenario}.toml"
-        if not file.is_file():
-            raise ValueError(
-                f"No scenario {scenario!r} comes with µ-CAT; name one that does, or pass its TOML."
-            )
-        text = file.read_text(encoding="utf-8")
+        shipped = shipped_scenarios()
+        if scenario not in shipped:
+            names = ", ".join(shipped)
+            raise ValueError(f"No scenario {scenario!r} comes with µ-CAT; pass one of {names}, or TOML.")
+        text = shipped[scenario]
     read = read_scenario(text)
     if duration is None:
         return read

@@ -1,22 +1,13 @@
 """The texts of the scenarios: those that ship with the program, and those of the data folder."""
 
 import logging
-from importlib.resources import files
 from pathlib import Path
 
 from robot_runtime.contract.text_input import TextError, load_text
 from robot_runtime.contract.toml_text import BYTES_MAX
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 
 log = logging.getLogger(__name__)
-
-SHIPPED = ("figure_14", "hover_in_a_current", "beacon_approach", "sensor_failure", "lost_link", "sea_trial")
-"""The shipped scenarios, the thesis's own first."""
-
-
-def shipped_scenarios() -> dict[str, str]:
-    """Return the texts of the shipped scenarios, by name."""
-    folder = files("robot_runtime.experiments.scenario") / "shipped"
-    return {name: (folder / f"{name}.toml").read_text(encoding="utf-8") for name in SHIPPED}
 
 
 def own_scenarios(folder: Path) -> list[tuple[Path, str]]:

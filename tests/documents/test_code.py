@@ -13,10 +13,10 @@ from robot_runtime.contract.craft import read_craft
 from robot_runtime.contract.packets import Depth
 from robot_runtime.contract.topics import DEPTH
 from robot_runtime.experiments.scenario.document import DEFAULT_CRAFT
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from robot_runtime.missions.document import read_mission
 from server.features.sweeps.order import read_document
 from server.health.monitor import HealthMonitor
-from server.library.scenarios import shipped_scenarios
 from server.platform.settings import Settings, read_settings
 from tests.documents import test_commands, test_recipes
 from tests.documents.blocks import DOCS, CodeBlock, read_blocks

@@ -82,5 +82,5 @@ except RobotError as problem:
     printed = run(python, program, str(RELEASED / version / ARCHIVE), cwd=tmp_path)
     assert printed.splitlines() == [
         f"{version} m True",
-        "A table needs the package pandas: pip install pandas",
+        "This needs the package pandas: pip install pandas",
     ]

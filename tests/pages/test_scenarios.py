@@ -5,7 +5,7 @@ import tomllib
 
 from playwright.sync_api import Page, Route, expect
 
-from server.library.scenarios import shipped_scenarios
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from server.platform.settings import DataFolder
 from tests.browser.code import draft_of, write_code
 from tests.browser.scenarios import open_scenarios

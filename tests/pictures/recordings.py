@@ -7,8 +7,8 @@ from typing import Any
 
 import httpx
 
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from server.cli import main
-from server.library.scenarios import shipped_scenarios
 from server.platform.settings import DataFolder
 
 POOL = """

@@ -21,6 +21,7 @@ from sqlalchemy.pool import Pool
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.experiments.comm_test.document import read_document
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from robot_runtime.transport.blocks import Block, row
 from server.cli import main
 from server.features.comm_tests.runs import CommTestStore
@@ -30,7 +31,6 @@ from server.features.scenarios.library import keep_scenario
 from server.library.bookmarks import Bookmarks
 from server.library.catalogue import Catalogue
 from server.library.retention import RetentionWorker
-from server.library.scenarios import shipped_scenarios
 from server.platform import sqlite as sqlite_module
 from server.platform.notices import Notices
 from server.platform.schema import prepare

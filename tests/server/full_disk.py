@@ -23,6 +23,7 @@ from sqlalchemy import update
 
 from robot_runtime.clock import SimulatedClock
 from robot_runtime.contract.topics import BY_NAME
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from robot_runtime.transport.blocks import Block, row
 from robot_runtime.vision.film import open_coder
 from server.features.backup.command import back_up
@@ -33,7 +34,6 @@ from server.library.content import Recording
 from server.library.film import film_from, write_mp4
 from server.library.listing import Listing
 from server.library.retention import RetentionWorker
-from server.library.scenarios import shipped_scenarios
 from server.platform.disk_reserve import DiskReserve
 from server.platform.disk_space import FileWriteError
 from server.platform.models import SessionRow

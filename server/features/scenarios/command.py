@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _complete(ctx: click.Context, _: click.Parameter, incomplete: str) -> "list[CompletionItem]":
-    from server.library.scenarios import SHIPPED
+    from robot_runtime.experiments.scenario.library import SHIPPED
 
     return complete_document(SHIPPED, folder_of(ctx).scenarios, incomplete)
 

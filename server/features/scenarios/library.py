@@ -7,8 +7,9 @@ from robot_runtime.contract.limits import ConfigError
 from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.errors import RefusedError
 from robot_runtime.experiments.scenario.document import Scenario, read_scenario
+from robot_runtime.experiments.scenario.library import SHIPPED, shipped_scenarios
 from server.features.scenarios.schemas import ScenarioText, summarize
-from server.library.scenarios import SHIPPED, own_scenarios, shipped_scenarios
+from server.library.scenarios import own_scenarios
 from server.platform.disk_space import FileWriteError, explain_write_error
 from server.platform.edited_meanwhile import ChangedMeanwhileError, mark_text
 

@@ -14,6 +14,7 @@ from robot_runtime.experiments.scenario.events import (
     LineFaultChange,
     WaterEvent,
 )
+from robot_runtime.experiments.scenario.library import SHIPPED, shipped_scenarios
 from robot_runtime.simulation.water.parameters import SimulationParameters
 from robot_runtime.simulation.water.surroundings import StartPose, Trim
 
@@ -102,20 +103,16 @@ def problems(text: str) -> list[str]:
     return refused.value.texts
 
 
-def shipped() -> dict[str, str]:
-    folder = files("robot_runtime.experiments.scenario") / "shipped"
-    return {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir()}
-
-
 def test_the_shipped_scenarios_are_valid() -> None:
-    read = {name: read_scenario(text) for name, text in shipped().items()}
-    assert len(read) == 7
-    assert {name: f"{scenario.name}.toml" for name, scenario in read.items()} == {name: name for name in read}
+    folder = files("robot_runtime.experiments.scenario") / "shipped"
+    assert {f"{name}.toml" for name in SHIPPED} == {file.name for file in folder.iterdir()}
+    read = {name: read_scenario(text) for name, text in shipped_scenarios().items()}
+    assert {name: scenario.name for name, scenario in read.items()} == {name: name for name in SHIPPED}
     assert all(any(event.do == "arm" for event in scenario.events) for scenario in read.values())
 
 
 def test_figure_14_is_the_thesis_evaluation() -> None:
-    scenario = read_scenario(shipped()["figure_14.toml"])
+    scenario = read_scenario(shipped_scenarios()["figure_14"])
     assert (scenario.control.controller, scenario.control.rate, scenario.vision.rate) == ("bang_bang", 10, 4)
     assert (scenario.control.set_point, scenario.control.set_point_detected) == (0.5, 1.0)
 

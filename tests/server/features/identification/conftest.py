@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.experiments.identification import fit
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from server.cli import main
-from server.library.scenarios import shipped_scenarios
 from server.platform.settings import DataFolder
 
 CRAFT = """

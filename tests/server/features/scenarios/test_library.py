@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from robot_runtime.errors import RefusedError
+from robot_runtime.experiments.scenario.library import SHIPPED
 from server.features.scenarios import library
 from server.features.scenarios.library import keep_scenario, list_scenarios
-from server.library.scenarios import SHIPPED
 
 
 def test_one_more_scenario_than_there_may_be_is_refused_and_a_stored_one_may_change(

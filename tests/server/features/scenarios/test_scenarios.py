@@ -129,7 +129,7 @@ def query(stack: Stack, question: str) -> list[Any]:
 def test_the_shipped_scenarios_are_listed_and_valid(stack: Stack) -> None:
     answer = stack.api.get("/scenarios").json()
     assert answer[0]["name"] == "figure_14"
-    assert len(answer) == 6
+    assert len(answer) == 7
     for scenario in answer:
         checked = stack.api.post("/scenarios/check", json={"text": scenario["text"]}).json()
         assert checked == {"problems": [], "summary": scenario["summary"]}

@@ -220,4 +220,4 @@ def test_a_scenario_runs_from_the_shell(
     assert main(["scenario", "run", str(tmp_path / "none.toml"), *options]) == 1
     assert "lost_link" in capsys.readouterr().err
     assert main(["scenario", "list", *options]) == 0
-    assert len(capsys.readouterr().out.splitlines()) == 6
+    assert len(capsys.readouterr().out.splitlines()) == 7
