@@ -10,6 +10,7 @@ import asyncio
 import logging
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -44,7 +45,9 @@ from server.recording.session import HIDDEN
 log = logging.getLogger(__name__)
 
 PERIOD = 30.0
-"""s between two looks at the robots."""
+"""s between two looks at a robot."""
+LOOKS_AT_ONCE = 8
+"""A robot that is away takes 20 s of one."""
 EXPORT_PAUSE = 0.5
 """s between two looks at an archive that a robot makes."""
 COPIES = 3
@@ -59,6 +62,8 @@ class _Progress:
     text: str = "It was not looked at yet."
     progress: float = 0.0
     lacking: int = 0
+    absent: bool = False
+    """It did not answer the last look."""
     seen: float | None = None
     sessions: int = 0
     pulled: float | None = None
@@ -67,7 +72,11 @@ class _Progress:
 
 
 class SessionPull:
-    """The pull from all robots of a lab, one robot and one session at a time."""
+    """The pull from all robots of a lab.
+
+    Several robots are looked at at once, those that were away beside the others, so that none waits for them.
+    Sessions are fetched one at a time.
+    """
 
     def __init__(self, store: Store, robots: PairedRobots, intake: ArchiveIntake, folder: DataFolder) -> None:
         self._store = store
@@ -75,6 +84,9 @@ class SessionPull:
         self._intake = intake
         self._folder = folder.pulls
         self._progress: defaultdict[str, _Progress] = defaultdict(_Progress)
+        self._looks = ThreadPoolExecutor(LOOKS_AT_ONCE, "look")
+        self._looks_for_absent = ThreadPoolExecutor(LOOKS_AT_ONCE, "look for absent")
+        self._fetching = asyncio.Lock()
         self._over = False
         self._wake = asyncio.Event()
 
@@ -85,30 +97,48 @@ class SessionPull:
     def wake(self) -> None:
         """Look at the robots soon."""
         self._wake.set()
+        # A new one, so that a pull which goes on just now is followed by another.
+        self._wake = asyncio.Event()
 
     def stop(self) -> None:
         """End a download: what has arrived stays."""
         self._over = True
+        for looks in (self._looks, self._looks_for_absent):
+            looks.shutdown(wait=False, cancel_futures=True)
 
     async def run(self) -> None:
         """Pull for ever."""
         loop = asyncio.get_running_loop()
         self._robots.listen(lambda: loop.call_soon_threadsafe(self._follow))
-        while True:
-            self._wake.clear()
-            for robot in self._robots.all():
-                await self.pull(robot)
+        known: set[str] = set()
+        async with asyncio.TaskGroup() as group:
+            while True:
+                wake, robots = self._wake, self._robots.all()
+                for robot in robots:
+                    if robot.token not in known:
+                        group.create_task(self._repeat(robot.token))
+                known = {robot.token for robot in robots}
+                await wake.wait()
+
+    async def _repeat(self, token: str) -> None:
+        """Pull from the robot with this token, wherever it has moved, until it is removed."""
+        while (robot := self._find(token)) is not None:
+            wake = self._wake
+            await self.pull(robot)
             with suppress(TimeoutError):
                 async with asyncio.timeout(PERIOD):
-                    await self._wake.wait()
+                    await wake.wait()
 
     async def pull(self, robot: PairedRobot) -> None:
         """Pull what is lacking from one robot now."""
         progress = self._progress[robot.name]
-        client = RobotClient(robot, lambda: self._over or not self._is_known(robot))
+        # A robot that was removed and has joined again has another token.
+        client = RobotClient(robot, lambda: self._over or self._find(robot.token) is None)
         try:
             await asyncio.to_thread(self._count, robot.name, progress)
-            await self._pull(client, robot, progress)
+            sessions = await self._look(client, progress)
+            async with self._fetching:
+                await self._pull(client, robot, sessions, progress)
         except RobotAnswerError as problem:
             progress.phase, progress.text = "failed" if problem.status else "unreachable", str(problem)
         except (FileWriteError, StoreError, OSError) as problem:
@@ -116,18 +146,18 @@ class SessionPull:
         except PullStoppedError:
             if not self._over:
                 # It was removed: nothing continues what has arrived.
-                await asyncio.to_thread(rmtree, self._folder, ignore_errors=True)
+                async with self._fetching:
+                    await asyncio.to_thread(rmtree, self._folder, ignore_errors=True)
 
     def _follow(self) -> None:
         """Look at the robots that there are now."""
         names = {robot.name for robot in self._robots.all()}
         for name in self._progress.keys() - names:
             del self._progress[name]
-        self._wake.set()
+        self.wake()
 
-    def _is_known(self, robot: PairedRobot) -> bool:
-        """Return False once a robot was removed, even if it has joined again since."""
-        return any(known.token == robot.token for known in self._robots.all())
+    def _find(self, token: str) -> PairedRobot | None:
+        return next((robot for robot in self._robots.all() if robot.token == token), None)
 
     def _count(self, robot: str, progress: _Progress) -> None:
         """Count the sessions of a robot in the archive. Raise StoreError."""
@@ -138,9 +168,19 @@ class SessionPull:
             progress.sessions = database.exec(sessions).one()
             progress.pulled = database.exec(pulled).one()
 
-    async def _pull(self, client: RobotClient, robot: PairedRobot, progress: _Progress) -> None:
-        sessions = await asyncio.to_thread(client.sessions)
-        progress.seen = time()
+    async def _look(self, client: RobotClient, progress: _Progress) -> list[SessionEdits]:
+        """Return the robot's sessions. Raise RobotAnswerError, PullStoppedError."""
+        if self._over:
+            raise PullStoppedError
+        looks = self._looks_for_absent if progress.absent else self._looks
+        progress.absent = True
+        sessions = await asyncio.get_running_loop().run_in_executor(looks, client.sessions)
+        progress.absent, progress.seen = False, time()
+        return sessions
+
+    async def _pull(
+        self, client: RobotClient, robot: PairedRobot, sessions: Sequence[SessionEdits], progress: _Progress
+    ) -> None:
         # Of one that the archive's own end has cut off, which is not here.
         await self._intake.drop_unfinished()
         stored, pulled, noted = await asyncio.to_thread(

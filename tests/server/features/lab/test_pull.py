@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from secrets import token_hex
 from tempfile import TemporaryDirectory
-from threading import Event
+from threading import Barrier, Event, Semaphore
 from typing import Any
 
 import httpx
@@ -18,14 +18,15 @@ from server.features.exports.archive_reader import ArchiveError
 from server.features.exports.imports import Imports
 from server.features.lab import pull as pull_module
 from server.features.lab import robot_client
-from server.features.lab.pull import SessionPull
-from server.features.lab.robot_client import RobotClient
+from server.features.lab.pull import LOOKS_AT_ONCE, SessionPull
+from server.features.lab.robot_client import RobotAnswerError, RobotClient
 from server.http.pinned_requests import UnreachableError
 from server.http.sign_in.access import Access
 from server.http.sign_in.identity import SHELL
 from server.library.bookmarks import Bookmarks
 from server.library.catalogue import Catalogue
 from server.library.content import Recording
+from server.library.schemas import SessionEdits
 from server.platform.database_copies import sum_file
 from server.platform.disk_space import FileWriteError
 from server.platform.models import Chunk, PulledSessionRow
@@ -195,6 +196,48 @@ async def test_what_is_in_the_robot_s_bin_comes_once_it_is_restored(robot: Pulle
         await robot.api.post(f"/sessions/{there['id']}/restore")
         lab.get(SessionPull).wake()
         await until(lambda: lab.get(Catalogue).page().total == 1, "the session")
+
+
+async def test_robots_that_are_away_delay_no_other(
+    robot: PulledRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    together, blocked, over = Barrier(LOOKS_AT_ONCE), Semaphore(0), Event()
+    sessions = RobotClient.sessions
+
+    def look(self: RobotClient) -> list[SessionEdits]:
+        name = self._robot.name
+        if name == "tested":
+            return sessions(self)
+        if name not in absent:
+            absent.add(name)
+            together.wait(SECONDS)
+        else:
+            blocked.release()
+            over.wait()
+        raise RobotAnswerError("It does not answer.")
+
+    absent: set[str] = set()
+    monkeypatch.setattr(RobotClient, "sessions", look)
+    async with lab_of(robot.settings) as lab:
+        for number in range(LOOKS_AT_ONCE):
+            away = PairedRobot(
+                name=f"away {number}", address=url_of(robot), fingerprint="", token=token_hex(4), joined=0.0
+            )
+            await asyncio.to_thread(lab.get(PairedRobots).add, away)
+        await introduce(lab, robot)
+        pull = lab.get(SessionPull)
+
+        def phases() -> set[tuple[bool, str]]:
+            return {(entry.robot == "tested", entry.phase) for entry in pull.listed()}
+
+        await until(lambda: phases() == {(False, "unreachable"), (True, "done")}, "a look at each")
+        pull.wake()
+        for _ in range(LOOKS_AT_ONCE):
+            await asyncio.to_thread(blocked.acquire)
+        await record(robot, "second")
+        pull.wake()
+        await until(lambda: lab.get(Catalogue).page().total == 2, "the second session")
+        over.set()
 
 
 async def test_an_armed_robot_is_left_alone(robot: PulledRobot) -> None:
