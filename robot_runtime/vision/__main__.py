@@ -89,6 +89,7 @@ class PictureLoop:
             watched=lambda topic: topic.name in self._watched,
         )
         self._node = VisionNode(config, self._clock, outputs, open_camera, self._connect)
+        self._node.film(parse(FilmCommand, start["film"]))
         self._card: str | None = start["card"]
 
     def run(self) -> None:

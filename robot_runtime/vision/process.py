@@ -13,8 +13,9 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
+from math import inf
 from pathlib import Path
 from signal import SIGKILL, Signals
 from socket import socketpair
@@ -84,6 +85,7 @@ class VisionProcess(Vision):
         self._numbers = itertools.count()
         self._asked: dict[int, Future[dict[str, Any]]] = {}
         self._watched: list[str] = []
+        self._film, self._film_until = FilmCommand(seconds=0.0), -inf
         self._lock = threading.Lock()
         self._child: subprocess.Popen[bytes] | None = None
         self._messages: MessageSocket | None = None
@@ -111,7 +113,9 @@ class VisionProcess(Vision):
         return self._ask({"snapshot": True}, "There is no picture to take")
 
     def film(self, command: FilmCommand) -> None:
-        """Film for `command.seconds` from now on; a process that is started later waits for the next one."""
+        """Film for `command.seconds` from now on, also by a process that is started meanwhile."""
+        with self._lock:
+            self._film, self._film_until = command, self._clock.now() + command.seconds
         self._tell({"film": asdict(command)})
 
     def refusals(self) -> list[str]:
@@ -218,7 +222,14 @@ class VisionProcess(Vision):
         config = {name: getattr(self._config, name) for name in fixed}
         # Settings that change meanwhile come after these.
         with self._lock:
-            start = {"config": config, "settings": self._settings.table(), "card": self.card, **self._zenoh}
+            film = replace(self._film, seconds=max(self._film_until - self._clock.now(), 0.0))
+            start = {
+                "config": config,
+                "settings": self._settings.table(),
+                "card": self.card,
+                "film": asdict(film),
+                **self._zenoh,
+            }
             self._messages = messages
             messages.send_at_once({"start": start})
         return messages, self._child

@@ -21,6 +21,7 @@ import pytest
 
 from robot_runtime.clock import SimulatedClock, SteadyClock
 from robot_runtime.config import VisionConfig
+from robot_runtime.contract.commands import FilmCommand
 from robot_runtime.contract.documents import Detection, Event
 from robot_runtime.contract.vision_settings import VisionSettings
 from robot_runtime.errors import RefusedError
@@ -42,12 +43,14 @@ class VisionRecord:
         self.events: list[Event] = []
         self.pictures: list[tuple[str, bytes]] = []
         self.thumbnails: list[bytes] = []
+        self.film: list[tuple[float, bytes]] = []
         self.snapshots: list[tuple[float, bytes]] = []
         self.watching: set[str] = set()
         self.outputs = VisionOutputs(
             detection=self.detections.append,
             event=self.events.append,
             picture=lambda topic, _, jpeg: self.pictures.append((topic.name, jpeg)),
+            film=lambda time, picture: self.film.append((time, picture)),
             thumbnail=lambda _, jpeg: self.thumbnails.append(jpeg),
             snapshot=lambda time, jpeg: self.snapshots.append((time, jpeg)),
             watched=lambda topic: topic.name in self.watching,
@@ -215,6 +218,15 @@ class TestFaults:
             "Camera: reading pool.avi crashed the decoder (SIGSEGV). It is started again at once; "
             "control goes on."
         ]
+
+    def test_a_film_goes_on_with_the_process_that_comes(self, seen: VisionRecord, tmp_path: Path) -> None:
+        with faulty(seen, tmp_path) as vision:
+            vision.film(FilmCommand(seconds=120.0))
+            seen.wait(lambda: seen.film, "film")
+            crash(vision, seen, tmp_path / "crash")
+            (tmp_path / "crash").unlink()
+            before = len(seen.film)
+            seen.wait(lambda: len(seen.film) > before, "film of the next process")
 
     def test_a_series_of_crashes_is_reported_once_and_its_pauses_grow(
         self, seen: VisionRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -248,6 +248,22 @@ async def test_a_film_is_asked_for_while_a_session_is_recorded(
         await until(lambda: filmed[-1]["seconds"] == 0.0, "the film to be ended")
 
 
+async def test_a_runtime_that_starts_is_asked_again_at_once(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(plug, "RENEWAL_SECONDS", 1000.0)
+    async with serve(settings.with_section(FilmConfig(record=True))) as served:
+        filmed = served.runtime.filmed
+        served.runtime.refusal = "It starts."
+        await served.api.post("/sessions", json={"name": "Dive"})
+        await until(lambda: filmed != [], "a refusal")
+        served.runtime.refusal = None
+        await until(lambda: len(filmed) > 1, "another try")
+        before = len(filmed)
+        served.runtime.publish(state_block(0))
+        await until(lambda: len(filmed) > before, "the run that speaks to be told")
+
+
 async def test_no_film_is_asked_for_where_robot_toml_does_not_say_so(served: Served) -> None:
     session: int = (await served.api.post("/sessions", json={"name": "Dive"})).json()["id"]
     await served.api.post(f"/sessions/{session}/stop")
