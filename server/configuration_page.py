@@ -6,12 +6,12 @@ sections. The meaning of an entry is the comment beside it in robot.toml, so tha
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, fields
 
 from robot_runtime.config import Config
 from robot_runtime.contract.hints import Hint, read_fields
-from robot_runtime.generate.markdown import fill, page, table
+from robot_runtime.generate.markdown import entry, fill, page
 from server.feature import list_features
 from server.platform.server_config import ServerConfig
 
@@ -37,7 +37,7 @@ def configuration_page(robot_toml: str) -> str:
     for name, cls in list_sections().items():
         summary = (cls.__doc__ or "").partition("\n\n")[0]
         parts += [f"## `[{name}]`\n", " ".join(summary.split()) + "\n"]
-        parts.append(table(("entry", "value", "default", "meaning"), _rows(cls, name, cls(), meanings)))
+        parts.append("".join(_list_entries(cls, name, cls(), meanings)))
     return page("Configuration", SOURCE, *parts)
 
 
@@ -69,9 +69,8 @@ def read_comments(text: str) -> dict[str, str]:
     return comments
 
 
-def _rows(cls: type, section: str, defaults: object, meanings: Mapping[str, str]) -> list[tuple[str, ...]]:
+def _list_entries(cls: type, section: str, defaults: object, meanings: Mapping[str, str]) -> Iterator[str]:
     hints = read_fields(cls)
-    rows: list[tuple[str, ...]] = []
     for field in fields(cls):
         meaning = TABLES.get(field.name) or meanings.get(f"{section}.{field.name}")
         if not meaning:
@@ -82,8 +81,7 @@ def _rows(cls: type, section: str, defaults: object, meanings: Mapping[str, str]
             if field.name in TABLES or field.default is MISSING is field.default_factory
             else _toml(default)
         )
-        rows.append((f"`{field.name}`", _values(hints[field.name]), shown, meaning))
-    return rows
+        yield entry(field.name, (_values(hints[field.name]), shown and f"default {shown}"), meaning)
 
 
 def _values(hint: Hint) -> str:

@@ -24,5 +24,12 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "".join("| " + " | ".join(map(_cell, line)) + " |\n" for line in lines)
 
 
+def entry(name: str, details: Iterable[str], meaning: str) -> str:
+    """Return a line of a list: a name in code, what is known of it in brackets, and its meaning."""
+    known = "; ".join(filter(None, details))
+    line = f"- `{name}`" + (f" ({known})" if known else "") + (f": {meaning}" if meaning else "")
+    return line.replace("<", "&lt;") + "\n"
+
+
 def _cell(text: str) -> str:
     return text.replace("|", "\\|").replace("<", "&lt;")

@@ -8,7 +8,7 @@ from dataclasses import MISSING, Field, fields
 from robot_runtime.contract.hints import read_fields
 from robot_runtime.contract.missions import LEVELS_MAX, NODES_MAX
 from robot_runtime.contract.toml_text import BYTES_MAX
-from robot_runtime.generate.markdown import fill, page, table
+from robot_runtime.generate.markdown import entry, fill, page, table
 from robot_runtime.generate.reference import describe_type
 from robot_runtime.missions.document import DESCRIPTION_MAX, TITLE_MAX
 from robot_runtime.missions.leaf import NODES, NOTE_MAX, Branch, Leaf, MissionNode
@@ -55,8 +55,8 @@ def missions_page() -> str:
     }
     for cls, rule in rules.items():
         parts += [f"## {cls.do}\n", f"{_meaning(cls)} {rule}\n"]
-        if rows := list(_field_rows(cls)):
-            parts.append(table(("field", "type", "unit", "without it", "meaning"), rows))
+        if lines := "".join(_field_lines(cls)):
+            parts.append(lines)
     return page("Missions", SOURCE, *parts)
 
 
@@ -68,12 +68,13 @@ def _steps(cls: type[Branch]) -> str:
     return f"Steps: {cls.least}{'' if cls.most == cls.least else ' at least'}."
 
 
-def _field_rows(cls: type[MissionNode]) -> Iterator[tuple[str, ...]]:
+def _field_lines(cls: type[MissionNode]) -> Iterator[str]:
     hints = read_fields(cls)
     for field in fields(cls):
         if field.name != "note":
             unit, meaning = field.metadata.get("unit", ""), field.metadata.get("description", "")
-            yield f"`{field.name}`", describe_type(hints[field.name]), unit, _default(field), meaning
+            type_ = " ".join(filter(None, (describe_type(hints[field.name]), unit)))
+            yield entry(field.name, (type_, _default(field)), meaning)
 
 
 def _default(field: "Field[typing.Any]") -> str:
@@ -82,7 +83,8 @@ def _default(field: "Field[typing.Any]") -> str:
     if field.default is None:
         return ""
     # Texts and switches as in TOML, which here are those of JSON.
-    return f"{field.default:g}" if isinstance(field.default, float) else json.dumps(field.default)
+    text = f"{field.default:g}" if isinstance(field.default, float) else json.dumps(field.default)
+    return f"without it {text}"
 
 
 def _meaning(cls: type[MissionNode]) -> str:

@@ -16,7 +16,7 @@ from robot_runtime.contract.topics import TOPICS, AnyTopic, Kind
 from robot_runtime.control.faults import ROBOT_FAULTS, FaultRule
 from robot_runtime.control.transitions import TRANSITIONS
 from robot_runtime.core import Core
-from robot_runtime.generate.markdown import fill, page, table
+from robot_runtime.generate.markdown import entry, fill, page, table
 from robot_runtime.link.link_driver import LinkDriver
 from robot_runtime.transport.outbox import Outbox
 from robot_runtime.vision.node import VisionNode
@@ -35,8 +35,8 @@ def commands_page() -> str:
     parts = [fill("commands"), table(head, map(_command_row, COMMANDS.values()))]
     for name, cls in COMMANDS.items():
         parts += [f"## {name}\n", f"{_one_line(cls)}\n"]
-        if rows := list(_command_fields(cls)):
-            parts.append(table(("field", "type", "meaning"), rows))
+        if lines := "".join(_command_fields(cls)):
+            parts.append(lines)
     return page("Commands", COMMANDS_SOURCE, *parts)
 
 
@@ -53,11 +53,11 @@ def _command_row(cls: type[RobotCommand]) -> tuple[str, ...]:
     )
 
 
-def _command_fields(cls: type[RobotCommand]) -> Iterator[tuple[str, ...]]:
+def _command_fields(cls: type[RobotCommand]) -> Iterator[str]:
     hints = read_fields(cls)
     for field in fields(cls):
         type_ = describe_type(hints[field.name]) + ("" if is_required(field) else ", optional")
-        yield f"`{field.name}`", type_, field.metadata.get("description", "")
+        yield entry(field.name, (type_,), field.metadata.get("description", ""))
 
 
 def describe_type(hint: Hint) -> str:
@@ -87,9 +87,7 @@ def topics_page() -> str:
     parts = [fill("topics"), table(head, map(_topic_row, TOPICS))]
     for topic in TOPICS:
         if topic.kind in (Kind.ROWS, Kind.DOCUMENTS):
-            parts += [f"## {topic.name}\n", f"{_one_line(topic.record)}\n"]
-            types = () if issubclass(topic.record, Record) else ("type",)
-            parts.append(table(("field", *types, "meaning"), _topic_fields(topic.record)))
+            parts += [f"## {topic.name}\n", *_describe_record(topic.record)]
     return page("Topics", TOPICS_SOURCE, *parts)
 
 
@@ -111,21 +109,33 @@ def _topic_row(topic: AnyTopic) -> tuple[str, ...]:
     )
 
 
-def _topic_fields(record: type[Record] | type[Document] | type[PublishedEvent]) -> Iterator[tuple[str, ...]]:
-    if issubclass(record, Record):
-        for name, wire in record.wires.items():
-            count = f" × {wire.count}" if wire.count > 1 else ""
-            yield f"`{name}`{count}", ", ".join(part for part in (wire.unit, wire.meaning) if part)
+def _describe_record(record: type[Record] | type[Document]) -> Iterator[str]:
+    if record in PACKETS.values():
+        yield f"The packet [{record.__name__}](packets.md#{record.__name__.lower()}).\n"
         return
+    yield f"{_one_line(record)}\n"
+    if issubclass(record, Record):
+        yield "".join(_row_fields(record))
+    else:
+        yield "".join(_document_fields(record))
+
+
+def _row_fields(record: type[Record]) -> Iterator[str]:
+    for name, wire in record.wires.items():
+        yield entry(name, (wire.unit, f"{wire.count} numbers" if wire.count > 1 else ""), wire.meaning)
+
+
+def _document_fields(record: type[Document] | type[PublishedEvent]) -> Iterator[str]:
+    """Yield a line for each field but a document's time, which all of them have."""
     hints = read_fields(record)
     for field in fields(record):
-        yield f"`{field.name}`", describe_type(hints[field.name]), field.metadata.get("meaning", "")
+        if field.name != "time" or record is PublishedEvent:
+            yield entry(field.name, (describe_type(hints[field.name]),), field.metadata.get("meaning", ""))
 
 
 def events_page() -> str:
     """Return the whole text of events.md."""
-    rows = [*_topic_fields(PublishedEvent)]
-    return page("Events", EVENTS_SOURCE, fill("events", fields=table(("field", "type", "meaning"), rows)))
+    return page("Events", EVENTS_SOURCE, fill("events", fields="".join(_document_fields(PublishedEvent))))
 
 
 def packets_page() -> str:
@@ -135,10 +145,10 @@ def packets_page() -> str:
         reliable = ", reliable" if packet.reliable else ""
         lead = f"`0x{packet.type:02X}`, {packet.describe_size()} bytes{reliable}. {_one_line(packet)}\n"
         parts += [f"## {packet.__name__}\n", lead]
-        rows = [_number_row(name, wire) for name, wire in packet.wires.items()]
-        rows += [_text_row(*packet.tail)] if packet.tail else []
-        if rows:
-            parts.append(table(("field", "on the wire; one count", "meaning"), rows))
+        lines = [_number_line(name, wire) for name, wire in packet.wires.items()]
+        lines += [_text_line(*packet.tail)] if packet.tail else []
+        if lines:
+            parts.append("".join(lines))
     parts.append("## Flags and codes\n")
     for enumeration in ENUMERATIONS:
         members = ", ".join(f"{member.value} `{member.name}`" for member in enumeration)
@@ -146,14 +156,14 @@ def packets_page() -> str:
     return page("Packets", PACKETS_SOURCE, *parts)
 
 
-def _number_row(name: str, wire: Wire) -> tuple[str, ...]:
+def _number_line(name: str, wire: Wire) -> str:
     type_ = f"`{C_TYPES[wire.code]}`" + (f" × {wire.count}" if wire.count > 1 else "")
-    step = f"; {wire.scale:.6g} {wire.unit}".rstrip() if wire.scale != 1 or wire.unit else ""
-    return f"`{name}`", type_ + step, wire.meaning
+    step = f"{wire.scale:.6g} {wire.unit}".rstrip() if wire.scale != 1 or wire.unit else ""
+    return entry(name, (type_, step), wire.meaning)
 
 
-def _text_row(name: str, text: Text) -> tuple[str, ...]:
-    return f"`{name}`", f"`uint8_t` length, then at most {text.max_bytes} bytes of UTF-8", text.meaning
+def _text_line(name: str, text: Text) -> str:
+    return entry(name, (f"`uint8_t` length, then at most {text.max_bytes} bytes of UTF-8",), text.meaning)
 
 
 def faults_page() -> str:

@@ -1,19 +1,20 @@
-"""docs/reference/http.md: every operation of the HTTP interface and its types, from the OpenAPI document.
+"""docs/reference/http.md: the operations of the HTTP interface and what they take, from the OpenAPI document.
 
-Types of requests are described field by field; of the types of answers alone it names the fields. Those of
-commands are described in commands.md.
+Types of requests are described field by field; the fields of answers are in the OpenAPI document alone.
+The commands of the robot are described in commands.md.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, cast
 
 from robot_runtime.contract.commands import COMMANDS
-from robot_runtime.generate.markdown import fill, page, table
+from robot_runtime.generate.markdown import entry, fill, page
 from server.http.sign_in.policy import DECLARED
 
 Schema = Mapping[str, Any]
 
 SOURCE = "the server's OpenAPI document"
+COMMANDS_PATH = "/api/robot/commands/"
 COMMAND_TYPES = {cls.__name__: name for name, cls in COMMANDS.items()}
 LARGEST = 2.0**63 - 1
 """The largest identifier of the database, which is no limit to a person."""
@@ -24,27 +25,20 @@ def http_page(document: Schema) -> str:
     operations = [
         (f"{method.upper()} {path}", operation)
         for path, methods in document["paths"].items()
+        if not path.startswith(COMMANDS_PATH)
         for method, operation in methods.items()
     ]
-    parts = [fill("http")]
-    for tag in dict.fromkeys(tag for _, operation in operations for tag in operation["tags"]):
-        rows = [_row(name, operation) for name, operation in operations if tag in operation["tags"]]
-        parts += [f"## {tag[0].upper()}{tag[1:]}\n"]
-        parts += [table(("operation", "needs", "request", "answer", "meaning"), rows)]
     types = document["components"]["schemas"]
     sent = _reach(
         types, {name for _, operation in operations for name in _names(operation.get("requestBody"))}
     )
+    parts = [fill("http")]
+    for tag in dict.fromkeys(tag for _, operation in operations for tag in operation["tags"]):
+        lines = [_operation(name, operation) for name, operation in operations if tag in operation["tags"]]
+        parts += [f"## {tag[0].upper()}{tag[1:]}\n", "".join(lines)]
     parts.append("## Types of requests\n")
     for name in filter((sent - COMMAND_TYPES.keys()).__contains__, types):
         parts += [f"### {name}\n", _sent(types[name])]
-    parts.append(
-        "## Types of answers\n\nEach field is named, with its type where that is one of these. "
-        "The OpenAPI document has their meanings.\n"
-    )
-    for name in types:
-        if name not in sent:
-            parts += [f"### {name}\n", _answered(types[name])]
     return page("HTTP", SOURCE, *parts)
 
 
@@ -68,14 +62,13 @@ def _names(schema: object) -> Iterator[str]:
             yield from _names(part)
 
 
-def _row(name: str, operation: Schema) -> tuple[str, ...]:
+def _operation(name: str, operation: Schema) -> str:
     summary, description = operation["summary"], operation.get("description", "")
     meaning = description if description.startswith(summary) else f"{summary}. {description}"
-    return (
-        f"`{name}`",
-        operation[DECLARED],
-        ", ".join(_request(operation)),
-        ", ".join(_answers(operation)),
+    answers = ", ".join(_answers(operation))
+    return entry(
+        name,
+        (operation[DECLARED], ", ".join(_request(operation)), answers and f"gives {answers}"),
         " ".join(meaning.split()),
     )
 
@@ -84,24 +77,21 @@ def _request(operation: Schema) -> Iterator[str]:
     for parameter in operation.get("parameters", ()):
         if parameter["in"] == "query":
             yield f"`?{parameter['name']}`" + (" (required)" if parameter.get("required") else "")
-    for content in operation.get("requestBody", {}).get("content", {}).items():
-        yield _content(*content)
+    yield from _contents(operation.get("requestBody", {}), _link)
 
 
 def _answers(operation: Schema) -> Iterator[str]:
     """Yield the answers of a success; refusals are the same for all operations."""
     for status, response in operation["responses"].items():
         if status.startswith("2"):
-            contents = [_content(*content) for content in response.get("content", {}).items()]
-            yield " ".join((*((status,) if status != "200" or not contents else ()), *contents))
+            shown = "" if status == "200" else f"{status} "
+            yield from (f"{shown}{content}" for content in _contents(response, "`{}`".format))
 
 
-def _content(media_type: str, content: Schema) -> str:
-    return (
-        _describe(content["schema"])
-        if "schema" in content and media_type == "application/json"
-        else f"`{media_type}`"
-    )
+def _contents(body: Schema, name_type: Callable[[str], str]) -> Iterator[str]:
+    for media_type, content in body.get("content", {}).items():
+        json = "schema" in content and media_type == "application/json"
+        yield _describe(content["schema"], name_type) if json else f"`{media_type}`"
 
 
 def _sent(schema: Schema) -> str:
@@ -110,18 +100,8 @@ def _sent(schema: Schema) -> str:
     lines = []
     for name, field in schema.get("properties", {}).items():
         type_ = _describe(field) + ("" if name in required else ", optional")
-        meaning = " ".join(field.get("description", "").split())
-        lines.append(f"- `{name}` ({type_})" + (f": {meaning}" if meaning else "") + "\n")
+        lines.append(entry(name, (type_,), " ".join(field.get("description", "").split())))
     return "".join(lines) or _describe(schema) + "\n"
-
-
-def _answered(schema: Schema) -> str:
-    """Return the text of an answer's type: the names of its fields, with their named types, or what it is."""
-    fields = [
-        " ".join((f"`{name}`", *(_link(inner) for inner in dict.fromkeys(_names(field)))))
-        for name, field in schema.get("properties", {}).items()
-    ]
-    return (", ".join(fields) or _describe(schema)) + "\n"
 
 
 def _link(name: str) -> str:
@@ -130,23 +110,27 @@ def _link(name: str) -> str:
     return f"[{name}](#{name.lower()})"
 
 
-def _describe(schema: Schema) -> str:
-    """Return a schema's short description; named types are links."""
+def _describe(schema: Schema, name_type: Callable[[str], str] = _link) -> str:
+    """Return a schema's short description."""
     if reference := schema.get("$ref"):
-        return _link(cast("str", reference).rpartition("/")[2])
+        return name_type(cast("str", reference).rpartition("/")[2])
     for key in ("anyOf", "oneOf"):
         if choices := schema.get(key):
-            return " or ".join(dict.fromkeys(map(_describe, choices)))
+            return " or ".join(dict.fromkeys(_describe(choice, name_type) for choice in choices))
     if values := schema.get("enum"):
         return ", ".join(f"`{value}`" for value in values)
     if "const" in schema:
         return f"`{schema['const']}`"
     match schema.get("type"):
         case "array":
-            return f"list of {_describe(schema['items'])}" if "items" in schema else "list"
+            return f"list of {_describe(schema['items'], name_type)}" if "items" in schema else "list"
         case "object":
             values = schema.get("additionalProperties")
-            return f"object of {_describe(values)}" if isinstance(values, dict) and values else "object"
+            return (
+                f"object of {_describe(values, name_type)}"
+                if isinstance(values, dict) and values
+                else "object"
+            )
         case "integer" | "number" as kind:
             return " ".join(
                 filter(None, ("whole number" if kind == "integer" else "number", _limits(schema)))

@@ -44,7 +44,7 @@ def look_for_scenario_event() -> None:
 
 def look_for_page_and_reference() -> None:
     assert "## blink\n\nBlinks the lamp." in commands_page()
-    assert "| `times` | whole number, 1 to 9 | flashes |" in commands_page()
+    assert "- `times` (whole number, 1 to 9): flashes\n" in commands_page()
     assert "  lamp: {\n    id: 211,\n    name: 'lamp',\n" in module()
     assert "| [lamp](#lamp) | 211 | rows | simulator |  | light of the lamp |" in topics_page()
 

@@ -72,8 +72,9 @@ def test_a_topic_is_added(tree: Path) -> None:
 
 def test_a_command_is_added(tree: Path) -> None:
     follow("develop/add-a-command.md", tree)
-    assert "## say\n" in (tree / "docs/reference/commands.md").read_text()
-    assert "| `POST /api/robot/commands/say` | control |" in (tree / "docs/reference/http.md").read_text()
+    reference = (tree / "docs/reference/commands.md").read_text()
+    assert "| [say](#say) | yes | control |" in reference
+    assert "## say\n" in reference
     assert len(changed_modules("develop/add-a-command.md")) == 2
 
 
@@ -109,14 +110,14 @@ def test_a_controller_is_added(tree: Path) -> None:
 def test_a_leaf_is_added(tree: Path) -> None:
     follow("develop/add-a-leaf.md", tree)
     reference = (tree / "docs/reference/missions.md").read_text()
-    assert "| `yaw` | number, 0.1 to 1 |  | 0.5 | share of the full command |" in reference
+    assert "- `yaw` (number, 0.1 to 1; without it 0.5): share of the full command\n" in reference
     assert len(changed_modules("develop/add-a-leaf.md")) == 2
 
 
 def test_a_route_is_added(tree: Path) -> None:
     follow("develop/add-a-route.md", tree)
     reference = (tree / "docs/reference/http.md").read_text()
-    assert "| `GET /api/link/speed` | viewer |  | [LinkSpeed](#linkspeed) |" in reference
+    assert "- `GET /api/link/speed` (viewer; gives `LinkSpeed`):" in reference
     assert len(changed_modules("develop/add-a-route.md")) == 1
 
 

@@ -79,7 +79,7 @@ def test_the_reference_has_a_chapter_for_every_packet_with_all_its_fields() -> N
     chapters = dict(re.findall(r"^## (\w+)\n(.*?)(?=^## |\Z)", packets_page(), re.MULTILINE | re.DOTALL))
     for packet in PACKETS.values():
         for name in packet.wires:
-            assert f"| `{name}` |" in chapters[packet.__name__]
+            assert f"- `{name}` (" in chapters[packet.__name__]
 
 
 def test_the_check_names_a_reference_page_that_is_not_current(
