@@ -1,10 +1,10 @@
-"""The manual's length: words outside code blocks, of what is written by hand and of everything."""
+"""The manual's length: words of docs/ and README.md, code and tables too, by hand and in all."""
 
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
-BY_HAND_MAX = 35_000
+BY_HAND_MAX = 36_500
 ALL_MAX = 60_000
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _CODE = re.compile(r"^( *)```.*?^\1```", re.MULTILINE | re.DOTALL)
@@ -20,16 +20,16 @@ def find_needless_words(root: Path) -> list[str]:
     by_hand, everything = map(sum, zip(*counts, strict=True))
     problems = []
     if by_hand > BY_HAND_MAX:
-        problems.append(f"docs/ has {by_hand} words written by hand; at most {BY_HAND_MAX} are wanted")
+        problems.append(f"the manual has {by_hand} words written by hand; at most {BY_HAND_MAX} are wanted")
     if everything > ALL_MAX:
-        problems.append(f"docs/ has {everything} words; at most {ALL_MAX} are wanted")
+        problems.append(f"the manual has {everything} words; at most {ALL_MAX} are wanted")
     return problems
 
 
 def count_words(text: str) -> tuple[int, int]:
-    """Return the number of words of a page that are written by hand, and of all; lines of tables are none."""
-    prose = _CODE.sub("", text)
-    return 0 if WRITTEN.search(prose) else _count(_MADE.sub("", prose)), _count(prose)
+    """Return the number of words of a page that are written by hand, and of all; signs alone are none."""
+    written = WRITTEN.search(_CODE.sub("", text)) is not None
+    return 0 if written else _count(_MADE.sub("", text)), _count(text)
 
 
 def _count(text: str) -> int:
@@ -38,3 +38,4 @@ def _count(text: str) -> int:
 
 def _pages(root: Path) -> Iterator[Path]:
     yield from sorted((root / "docs").rglob("*.md"))
+    yield root / "README.md"

@@ -58,8 +58,9 @@ def page_of(name: str, cells: list[RunCell]) -> tuple[str, dict[str, str]]:
     """Return the Markdown page of a notebook that was run, and its figures by the names of their files."""
     figures: dict[str, str] = {}
     parts = [*_parts(name, cells, figures)]
+    mark = f"<!-- Written by `make notebooks` from {name}.ipynb. Do not edit. -->\n"
     note = f"[This page as a notebook]({name}.ipynb). Outputs are of a run in simulated water.\n"
-    return "\n".join([parts[0], note, *parts[1:]]), figures
+    return "\n".join([parts[0], mark, note, *parts[1:]]), figures
 
 
 def _parts(name: str, cells: list[RunCell], figures: dict[str, str]) -> Iterator[str]:
