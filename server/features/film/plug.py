@@ -38,7 +38,7 @@ class FilmPlug(Plug):
         self._changed = asyncio.Event()
         self._recording = False
         self._filming = False
-        self._run_told = ""
+        self._informed_run = ""
         """The run of the runtime that was told last."""
         if not choice.refusal:
             choice.changed = self._changed.set
@@ -54,7 +54,7 @@ class FilmPlug(Plug):
             self._changed.set()
 
     def _see_run(self) -> None:
-        if self._filming and self._bridge.run != self._run_told:
+        if self._filming and self._bridge.run != self._informed_run:
             self._changed.set()
 
     async def _run(self) -> None:
@@ -76,7 +76,7 @@ class FilmPlug(Plug):
         """Return False where the runtime has not confirmed it."""
         choice = self._choice.now
         command = FilmCommand(seconds=seconds, rate=choice.rate, quality=choice.quality)
-        self._run_told = self._bridge.run
+        self._informed_run = self._bridge.run
         try:
             await self._bridge.command(command.policy.name, command.payload())
         except (RuntimeSilentError, RefusedError):
