@@ -215,10 +215,10 @@ async def test_bodies_of_requests_are_read_so(body: bytes, message: str, served:
 
 READERS = re.compile(r"\btomllib\.|\bjson\.load\(|\.read_text\(")
 READ_THEIR_OWN = {
-    "mucat/gym/environment.py",
     "robot_runtime/clock.py",
     "robot_runtime/contract/toml_text.py",
     "robot_runtime/experiments/mission_trial/__main__.py",
+    "robot_runtime/experiments/scenario/library.py",
     "robot_runtime/generate/__main__.py",
     "robot_runtime/generate/markdown.py",
     "robot_runtime/missions/library.py",
@@ -246,7 +246,6 @@ READ_THEIR_OWN = {
     "server/features/scenarios/live_setup.py",
     "server/features/sweeps/runner.py",
     "server/http/help_pages.py",
-    "server/library/scenarios.py",
     "server/openapi.py",
     "server/platform/audit_file.py",
     "server/platform/certificate.py",
