@@ -110,19 +110,19 @@ class SessionPull:
         """Pull for ever."""
         loop = asyncio.get_running_loop()
         self._robots.listen(lambda: loop.call_soon_threadsafe(self._follow))
-        known: set[str] = set()
+        known: set[tuple[str, str]] = set()
         async with asyncio.TaskGroup() as group:
             while True:
                 wake, robots = self._wake, self._robots.all()
                 for robot in robots:
-                    if robot.token not in known:
-                        group.create_task(self._repeat(robot.token))
-                known = {robot.token for robot in robots}
+                    if (robot.name, robot.token) not in known:
+                        group.create_task(self._repeat(robot.name, robot.token))
+                known = {(robot.name, robot.token) for robot in robots}
                 await wake.wait()
 
-    async def _repeat(self, token: str) -> None:
-        """Pull from the robot with this token, wherever it has moved, until it is removed."""
-        while (robot := self._find(token)) is not None:
+    async def _repeat(self, name: str, token: str) -> None:
+        """Pull from a robot, wherever it has moved, until it is removed."""
+        while (robot := self._find(name, token)) is not None:
             wake = self._wake
             await self.pull(robot)
             with suppress(TimeoutError):
@@ -133,7 +133,7 @@ class SessionPull:
         """Pull what is lacking from one robot now."""
         progress = self._progress[robot.name]
         # A robot that was removed and has joined again has another token.
-        client = RobotClient(robot, lambda: self._over or self._find(robot.token) is None)
+        client = RobotClient(robot, lambda: self._over or self._find(robot.name, robot.token) is None)
         try:
             await asyncio.to_thread(self._count, robot.name, progress)
             sessions = await self._look(client, progress)
@@ -156,8 +156,9 @@ class SessionPull:
             del self._progress[name]
         self.wake()
 
-    def _find(self, token: str) -> PairedRobot | None:
-        return next((robot for robot in self._robots.all() if robot.token == token), None)
+    def _find(self, name: str, token: str) -> PairedRobot | None:
+        robots = self._robots.all()
+        return next((robot for robot in robots if (robot.name, robot.token) == (name, token)), None)
 
     def _count(self, robot: str, progress: _Progress) -> None:
         """Count the sessions of a robot in the archive. Raise StoreError."""
