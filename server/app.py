@@ -78,8 +78,9 @@ def _build_routes(location: str, feature: Feature, settings: Settings) -> list[B
     source = resolve_name(location)
     if isinstance(source, Operations):
         return _build(source)
-    assert feature.section is not None
-    return [route for made in source(settings.section(feature.section)) for route in _build(made)]
+    section = feature.section_class
+    assert section is not None
+    return [route for made in source(settings.section(section)) for route in _build(made)]
 
 
 @cache

@@ -47,9 +47,9 @@ def list_sections() -> dict[str, type]:
         **{field.name: type(field.default) for field in fields(Config)},
         "server": ServerConfig,
         **{
-            feature.name: feature.section
+            feature.name: section
             for feature in list_features().values()
-            if feature.section is not None
+            if (section := feature.section_class) is not None
         },
     }
 

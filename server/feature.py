@@ -27,17 +27,17 @@ Place = Literal["robot", "lab", "both"]
 class Feature:
     """A feature and its parts; locations in the code are written "module:name".
 
-    `section` is the class of its section of robot.toml, which has its name. `is_on` tells by the section
-    whether the feature has anything to do. `place` names the servers that have it. An `optional` one can be
-    switched off in `[features]`. `removed` are entries of earlier versions: empty ones are passed over, the
-    others refused in words. `routes` are places of `Operations`, or of functions that make them of their
-    section. `prepare` is the place of a function of the settings, called before the server is loaded; a
+    `section` is the place of the class of its section of robot.toml, which has its name. `is_on` tells by
+    the section whether the feature has anything to do. `place` names the servers that have it. An `optional`
+    one can be switched off in `[features]`. `removed` are entries of earlier versions: empty ones are passed
+    over, the others refused in words. `routes` are places of `Operations`, or of functions that make them of
+    their section. `prepare` is the place of a function of the settings, called before the server is loaded; a
     SetupError ends the start. `commands` are those of the shell, by their names; two words are a command of a
     group. `plug` is the place of its `Plug`.
     """
 
     name: str
-    section: type | None = None
+    section: str = ""
     is_on: Callable[[Any], bool] = lambda _: True
     optional: bool = False
     place: Place = "robot"
@@ -46,6 +46,11 @@ class Feature:
     commands: Mapping[str, str] = field(default_factory=dict)
     plug: str = ""
     prepare: str = ""
+
+    @property
+    def section_class(self) -> type | None:
+        """The class of its section of robot.toml; None without one."""
+        return resolve_name(self.section) if self.section else None
 
 
 class Plug:

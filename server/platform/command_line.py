@@ -12,8 +12,6 @@ from click.exceptions import Exit
 
 from robot_runtime.errors import RefusedError
 from server.platform.errors import ApiError
-from server.platform.last_configuration import read_usable_settings
-from server.platform.settings import SetupError, read_settings
 from server.platform.terminal import plain
 
 FILE = click.Path(path_type=Path)
@@ -90,6 +88,10 @@ def with_settings(command: Callable[..., int | None]) -> Callable[..., int | Non
     @config_option
     @wraps(command)
     def run(*, data: Path | None, config: Path | None, **options: Any) -> int | None:
+        # Only a command that runs needs them: a shell completes names without.
+        from server.platform.last_configuration import read_usable_settings
+        from server.platform.settings import SetupError, read_settings
+
         host, port = options.pop("host", None), options.pop("port", None)
         read = read_usable_settings if options.get("external_runtime", True) else read_settings
         try:

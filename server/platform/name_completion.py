@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from click.shell_completion import CompletionItem
 
-from server.platform.settings import DataFolder, data_folder
+from server.platform.data_path import DATABASE, data_path
 from server.platform.terminal import plain
 
 SESSIONS_MAX = 100
@@ -27,7 +27,7 @@ class SessionType(click.types.IntParamType):
         incomplete: str,
     ) -> list[CompletionItem]:
         """Return the newest matching sessions; none where the data folder cannot be read."""
-        database = folder_of(ctx).database
+        database = folder_of(ctx) / DATABASE
         try:
             with closing(sqlite3.connect(f"{database.as_uri()}?mode=ro", uri=True)) as connection:
                 rows = connection.execute(SESSIONS).fetchall()
@@ -45,9 +45,9 @@ class SessionType(click.types.IntParamType):
 SESSION_NUMBER = SessionType()
 
 
-def folder_of(ctx: click.Context) -> DataFolder:
-    """Return the data folder that the incomplete command line names, or the usual one."""
-    return data_folder(ctx.params.get("data"), os.environ)
+def folder_of(ctx: click.Context) -> Path:
+    """Return the path of the data folder that the incomplete command line names, or the usual one."""
+    return data_path(ctx.params.get("data"), os.environ)
 
 
 def complete_document(names: Iterable[str], own: Path, incomplete: str) -> list[CompletionItem]:

@@ -31,6 +31,7 @@ from robot_runtime.durable_files import make_folder, write_whole
 from robot_runtime.places import BUILD, DEFAULT_CONFIG, IN_REPOSITORY
 from robot_runtime.profile import profile_here
 from server.feature import Feature, list_features
+from server.platform.data_path import DATABASE, MISSIONS, SCENARIOS, data_path
 from server.platform.pidfile import RUNTIME_PAUSED, hold_still, running_parts
 from server.platform.server_config import ServerConfig
 
@@ -64,7 +65,7 @@ class DataFolder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.database = path / "mucat.db"
+        self.database = path / DATABASE
         """Sessions and their samples, and everything else that is stored."""
         self.backups = path / "backups"
         """Copies of the database."""
@@ -124,9 +125,9 @@ class DataFolder:
         """The report of the newest bring-up."""
         self.scenario_before = path / "scenario-before.json"
         """Exists while a scenario runs on the robot: the settings before it."""
-        self.scenarios = path / "scenarios"
+        self.scenarios = path / SCENARIOS
         """Your own scenarios."""
-        self.missions = path / "missions"
+        self.missions = path / MISSIONS
         """Your own missions: a folder each, with their versions."""
         self.wall_clock = path / "wall-clock.json"
         """The last known time (platform/wall_clock.py)."""
@@ -207,7 +208,8 @@ class Settings(Config):
             return False
         if feature.optional and not self.features.get(feature.name, True):
             return False
-        return feature.section is None or feature.is_on(self.section(feature.section))
+        section = feature.section_class
+        return section is None or feature.is_on(self.section(section))
 
     @property
     def scheme(self) -> str:
@@ -317,7 +319,7 @@ def _read_sections(
 ) -> tuple[Mapping[str, bool], Mapping[type, Any]]:
     """Return the switches of optional features, and the sections beside the robot's. Raise ConfigError."""
     features = list_features().values()
-    named = {feature.name: feature for feature in features if feature.section is not None}
+    named = {feature.name: feature for feature in features if feature.section}
     optional = [feature.name for feature in features if feature.optional]
     known = [*(field.name for field in fields(Config)), "server", "features", *named]
     problems = [
@@ -338,9 +340,10 @@ def _read_sections(
     sections: dict[type, Any] = {}
     sections[ServerConfig] = read_value(ServerConfig, table.get("server", {}), where.field("server"))
     for name, feature in named.items():
-        if name in table and feature.section is not None:
+        section = feature.section_class
+        if name in table and section is not None:
             entries = _without_removed(table[name], feature.removed, where.field(name))
-            sections[feature.section] = read_value(feature.section, entries, where.field(name))
+            sections[section] = read_value(section, entries, where.field(name))
     return switched, sections
 
 
@@ -360,7 +363,7 @@ def _without_removed(section: Any, removed: Sequence[str], where: DocumentEntry)
 
 def data_folder(data: Path | None, environment: Mapping[str, str]) -> DataFolder:
     """Return the data folder named by the command line, else by the environment."""
-    return DataFolder((data or Path(environment.get("MUCAT_DATA") or "data")).absolute())
+    return DataFolder(data_path(data, environment))
 
 
 def find_config(folder: DataFolder) -> Path:

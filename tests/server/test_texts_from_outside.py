@@ -21,7 +21,8 @@ from server.features.missions import command as missions
 from server.features.panels.scripts import list_panels
 from server.features.scenarios import command as scenarios
 from server.features.vision.routes import read_document as read_vision
-from server.platform.settings import Settings, SetupError
+from server.platform.command_line import CommandError
+from server.platform.settings import Settings
 from tests.server.serving import Served
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -90,7 +91,7 @@ def read(name: str, data: bytes, settings: Settings) -> object:
 def refusal(name: str, data: bytes, settings: Settings) -> str:
     try:
         result = read(name, data, settings)
-    except (ConfigError, SetupError, ProfileError, OutletError) as problem:
+    except (ConfigError, CommandError, ProfileError, OutletError) as problem:
         result = str(problem)
     assert isinstance(result, str), result
     assert not MISLEADING.search(result), result

@@ -1,14 +1,16 @@
 """`mucat report`: a comparison as an HTML file, from a shell."""
 
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
-from server.platform.command_line import FILE, RowCommand, name_error, with_settings
+from server.platform.command_line import FILE, CommandError, RowCommand, name_error, with_settings
 from server.platform.name_completion import SESSION_NUMBER
-from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
+
+if TYPE_CHECKING:
+    from server.platform.settings import Settings
 
 
 @click.command(cls=RowCommand)
@@ -48,7 +50,7 @@ from server.platform.terminal import echo
 )
 @with_settings
 def report(
-    settings: Settings,
+    settings: "Settings",
     sessions: tuple[int, ...],
     out: Path,
     align: str,
@@ -75,7 +77,7 @@ def report(
     from server.platform.shell_store import open_reader
 
     if len(sessions) > SESSIONS_MAX:
-        raise SetupError(f"A report holds {SESSIONS_MAX} sessions at most.")
+        raise CommandError(f"A report holds {SESSIONS_MAX} sessions at most.")
     by = "marker" if marker else "mission" if mission_step is not None else align
     moment = {"by": by, "number": step, "marker": marker or "", "step": mission_step or ""}
     try:
@@ -91,9 +93,9 @@ def report(
             text = write_report(Comparer(store).compare(query))
         out.write_text(text, encoding="utf-8")
     except ValidationError as problem:
-        raise SetupError("; ".join(name_error(error) for error in problem.errors())) from problem
+        raise CommandError("; ".join(name_error(error) for error in problem.errors())) from problem
     except ValueError as problem:
-        raise SetupError(f"The report cannot be made: {problem}") from problem
+        raise CommandError(f"The report cannot be made: {problem}") from problem
     except OSError as problem:
-        raise SetupError(f"{out} cannot be written: {problem.strerror}.") from problem
+        raise CommandError(f"{out} cannot be written: {problem.strerror}.") from problem
     echo(out)

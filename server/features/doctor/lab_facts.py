@@ -85,9 +85,10 @@ def _read_ends(settings: Settings) -> tuple[dict[str, float], str]:
 
 def _find_scheduler(settings: Settings) -> str:
     sweeps = list_features()["sweeps"]
-    if not settings.has(sweeps) or sweeps.section is None:
+    section = sweeps.section_class
+    if not settings.has(sweeps) or section is None:
         return ""
-    return str(getattr(settings.section(sweeps.section), "scheduler", ""))
+    return str(getattr(settings.section(section), "scheduler", ""))
 
 
 def _try(scheduler: str) -> str:

@@ -1,11 +1,10 @@
 """Doors for other programs: rosbridge and the Foxglove WebSocket, behind the sign-in of the page."""
 
 from server.feature import Feature
-from server.features.doors.config import DoorsConfig
 
 FEATURE = Feature(
     name="doors",
-    section=DoorsConfig,
+    section="server.features.doors.config:DoorsConfig",
     is_on=lambda doors: doors.rosbridge or doors.foxglove or doors.ros2,
     routes=(
         "server.features.doors.routes:router",

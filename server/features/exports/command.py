@@ -1,21 +1,18 @@
 """`mucat export` and `mucat import`: export and import of sessions from a shell."""
 
-import asyncio
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from server.platform.command_line import FILE, NUMBER, RowCommand, name_error, with_settings
-from server.platform.folder_lock import claim, record_command
+from server.platform.command_line import FILE, NUMBER, CommandError, RowCommand, name_error, with_settings
 from server.platform.name_completion import SESSION_NUMBER
-from server.platform.running_server import send_file, server_runs
-from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from server.features.exports.selection import ExportSelection
+    from server.platform.settings import DataFolder, Settings
 
 FORMATS = ("csv", "csv-grid", "xlsx", "parquet", "mcap", "archive", "report", "mp4")
 IMPORT_SECONDS = 3600.0
@@ -42,7 +39,7 @@ IMPORT_SECONDS = 3600.0
 )
 @click.option("-o", "--output", type=FILE, help="Default: a file here, named after the session.")
 @with_settings
-def export_session(settings: Settings, session: int, output: Path | None, **choice: Any) -> None:
+def export_session(settings: "Settings", session: int, output: Path | None, **choice: Any) -> None:
     """Write a session as a file, also beside a running server."""
     from pydantic import ValidationError
 
@@ -52,6 +49,7 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
     from server.features.exports.formats import check
     from server.features.exports.schemas import ExportOptions
     from server.features.exports.selection import ExportSelection
+    from server.platform.folder_lock import record_command
     from server.platform.shell_store import open_reader
     from server.recording.session import find_row
 
@@ -74,20 +72,23 @@ def export_session(settings: Settings, session: int, output: Path | None, **choi
             written = write_part(part, lambda file: kind.write_unpurged(store, source, file))
             put_in_place(part, path)
     except ValidationError as problem:
-        raise SetupError("; ".join(name_error(error) for error in problem.errors())) from problem
+        raise CommandError("; ".join(name_error(error) for error in problem.errors())) from problem
     echo(f"{path}: {written.bytes} bytes, SHA-256 {written.sha256}")
 
 
 @click.command("import")
 @click.argument("file", type=FILE)
 @with_settings
-def import_session(settings: Settings, file: Path) -> None:
+def import_session(settings: "Settings", file: Path) -> None:
     """Import a session from an archive.
 
     FILE was written by `mucat export --format archive`.
     """
+    from server.platform.folder_lock import claim
+    from server.platform.running_server import send_file, server_runs
+
     if not file.is_file():
-        raise SetupError(f"There is no file {file}.")
+        raise CommandError(f"There is no file {file}.")
     if server_runs(settings.data):
         session = send_file(settings.data, "/imports", file, IMPORT_SECONDS)
         number, name = session["id"], session["name"]
@@ -97,7 +98,9 @@ def import_session(settings: Settings, file: Path) -> None:
     echo(f"session {number}: {name}")
 
 
-def _take(file: Path, folder: DataFolder) -> tuple[int, str]:
+def _take(file: Path, folder: "DataFolder") -> tuple[int, str]:
+    import asyncio
+
     from server.features.exports.imports import Imports
     from server.platform.shell_store import open_writer
     from server.recording.session import find_row

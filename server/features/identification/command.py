@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from server.platform.command_line import FILE, with_settings
+from server.platform.command_line import FILE, CommandError, with_settings
 from server.platform.name_completion import SESSION_NUMBER
-from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from click._termui_impl import ProgressBar
 
     from server.features.identification.schemas import IdentificationResult
+    from server.platform.settings import Settings
 
 
 @click.command()
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @click.option("--report", type=FILE, help="Also write an HTML file with measured over predicted signals.")
 @with_settings
 def identify(
-    settings: Settings, sessions: tuple[int, ...], leave_out: int | None, out: Path, report: Path | None
+    settings: "Settings", sessions: tuple[int, ...], leave_out: int | None, out: Path, report: Path | None
 ) -> None:
     """Fit drag, thrust, trim and sensors of the craft in force to sessions.
 
@@ -40,11 +40,11 @@ def identify(
     from server.platform.shell_store import open_reader
 
     if len(sessions) > SESSIONS_MAX:
-        raise SetupError(f"A fit takes {SESSIONS_MAX} sessions at most.")
+        raise CommandError(f"A fit takes {SESSIONS_MAX} sessions at most.")
     check_choice(sessions, leave_out)
     for path in (out, *([report] if report else [])):
         if not os.access(path if path.exists() else path.absolute().parent, os.W_OK):
-            raise SetupError(f"{path} cannot be written. Name another file.")
+            raise CommandError(f"{path} cannot be written. Name another file.")
     try:
         start = settings.read_craft()
         with open_reader(settings.data) as store, _progress() as bar:
@@ -52,7 +52,7 @@ def identify(
                 store, sessions, leave_out, start, lambda share: bar.update(round(100 * share) - bar.pos)
             )
     except ConfigError as problem:
-        raise SetupError(f"{problem}. Correct or remove the craft file.") from problem
+        raise CommandError(f"{problem}. Correct or remove the craft file.") from problem
     _print(result)
     _write(out, result.craft)
     if report is not None:
@@ -90,5 +90,5 @@ def _write(path: Path, text: str) -> None:
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as problem:
-        raise SetupError(f"{path} cannot be written: {problem.strerror}.") from problem
+        raise CommandError(f"{path} cannot be written: {problem.strerror}.") from problem
     echo(path)

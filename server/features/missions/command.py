@@ -1,15 +1,14 @@
 """`mucat mission`: list, check, try, run and show missions from a shell."""
 
-import asyncio
 from pathlib import Path
 from time import sleep
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from server.platform.command_line import TAKE_OVER, with_settings
+from server.platform.command_line import TAKE_OVER, CommandError, with_settings
+from server.platform.data_path import MISSIONS
 from server.platform.name_completion import complete_document, folder_of
-from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
 
     from robot_runtime.missions.document import MissionDocument
     from server.features.missions.schemas import MissionTrialResult
+    from server.platform.settings import Settings
 
 POLL_SECONDS = 0.5
 SILENT_SECONDS = 2.0
@@ -26,7 +26,7 @@ SILENT_SECONDS = 2.0
 def _complete(ctx: click.Context, _: click.Parameter, incomplete: str) -> "list[CompletionItem]":
     from robot_runtime.missions.library import SHIPPED
 
-    return complete_document(SHIPPED, folder_of(ctx).missions, incomplete)
+    return complete_document(SHIPPED, folder_of(ctx) / MISSIONS, incomplete)
 
 
 MISSION = click.argument("file", metavar="MISSION", shell_complete=_complete)
@@ -42,7 +42,7 @@ def mission() -> None:
 
 @mission.command("list")
 @with_settings
-def list_all(settings: Settings) -> None:
+def list_all(settings: "Settings") -> None:
     """List the missions."""
     from server.features.missions.library import MissionLibrary
 
@@ -54,7 +54,7 @@ def list_all(settings: Settings) -> None:
 @mission.command()
 @MISSION
 @with_settings
-def check(settings: Settings, file: str) -> None:
+def check(settings: "Settings", file: str) -> None:
     """Show the problems of a mission, if any."""
     from robot_runtime.config import load
     from robot_runtime.contract.limits import ConfigError
@@ -65,7 +65,7 @@ def check(settings: Settings, file: str) -> None:
     try:
         unseen = check_sights(read, load(settings.config).vision.settings)
     except ConfigError as problem:
-        raise SetupError(str(problem)) from problem
+        raise CommandError(str(problem)) from problem
     if unseen:
         echo("\n".join([f"But with the vision of {settings.config} it would not begin:", *unseen]))
 
@@ -73,7 +73,7 @@ def check(settings: Settings, file: str) -> None:
 @mission.command()
 @MISSION
 @with_settings
-def show(settings: Settings, file: str) -> None:
+def show(settings: "Settings", file: str) -> None:
     """Show a mission's steps, its longest time and its limits."""
     _, read = _read(file, settings)
     limits = read.limits
@@ -89,8 +89,10 @@ def show(settings: Settings, file: str) -> None:
 @MISSION
 @click.option("--seeds", type=click.IntRange(1, 100), default=20, help="How many; each has its own noise.")
 @with_settings
-def try_out(settings: Settings, file: str, seeds: int) -> int:
+def try_out(settings: "Settings", file: str, seeds: int) -> int:
     """Try a mission in simulated water, once for each seed: successes, durations, depths, failed steps."""
+    import asyncio
+
     from server.features.missions.library import MissionLibrary
     from server.features.missions.trials import MissionTrials
 
@@ -109,7 +111,7 @@ def try_out(settings: Settings, file: str, seeds: int) -> int:
         measured = f"{result.elapsed:7.1f} s  {result.deepest:5.2f} m"
         echo(f"seed {result.seed:>3}  {outcome:<9} {measured}  {result.text}")
     if trial.problem:
-        raise SetupError(trial.problem)
+        raise CommandError(trial.problem)
     good = [result for result in trial.results if result.phase == "succeeded"]
     echo(f"{len(good)} of {seeds} succeeded.{_describe_span(good)}")
     return 0 if len(good) == seeds else 1
@@ -126,7 +128,7 @@ def _describe_span(good: "list[MissionTrialResult]") -> str:
 @MISSION
 @TAKE_OVER
 @with_settings
-def run(settings: Settings, file: str, take_over: bool) -> int:
+def run(settings: "Settings", file: str, take_over: bool) -> int:
     """Arm the robot of the running server, begin a mission, and follow it to its end. Ctrl-C ends it."""
     from server.driving.shell_control import in_control, renew_control
     from server.platform.running_server import ask
@@ -155,7 +157,7 @@ def run(settings: Settings, file: str, take_over: bool) -> int:
                 sleep(POLL_SECONDS)
         except KeyboardInterrupt:
             ask(folder, "POST", "/robot/commands/mission_end")
-            raise SetupError("The mission was ended.") from None
+            raise CommandError("The mission was ended.") from None
 
 
 def _began(state: dict[str, Any]) -> float:
@@ -164,12 +166,12 @@ def _began(state: dict[str, Any]) -> float:
 
 
 def _require_swimming(seen: float, robot: dict[str, Any]) -> None:
-    """Raise SetupError where the robot was disarmed without the mission's end: its runtime was killed.
+    """Raise CommandError where the robot was disarmed without the mission's end: its runtime was killed.
 
     `seen`: the time of its newest state, s of the steady clock.
     """
     if not robot["armed"] and robot["time"] > seen + SILENT_SECONDS:
-        raise SetupError("The mission broke off: the runtime was restarted. The robot is disarmed.")
+        raise CommandError("The mission broke off: the runtime was restarted. The robot is disarmed.")
 
 
 def _print_changes(state: dict[str, Any], shown: set[tuple[str, str, int]]) -> None:
@@ -180,7 +182,7 @@ def _print_changes(state: dict[str, Any], shown: set[tuple[str, str, int]]) -> N
             echo(f"{state['elapsed']:8.1f} s  {step['path'] or '-'} {step['words']}: {step['status']}")
 
 
-def _read(file: str, settings: Settings) -> "tuple[str, MissionDocument]":
+def _read(file: str, settings: "Settings") -> "tuple[str, MissionDocument]":
     from robot_runtime.contract.limits import ConfigError
     from robot_runtime.contract.text_input import TextError, load_text
     from server.features.missions.library import MissionLibrary
@@ -191,8 +193,10 @@ def _read(file: str, settings: Settings) -> "tuple[str, MissionDocument]":
         text = there[file] if file in there else load_text(Path(file))
         return text, library.read(text)
     except TextError as problem:
-        raise SetupError(f"{file} cannot be read: it {problem}") from problem
+        raise CommandError(f"{file} cannot be read: it {problem}") from problem
     except OSError as problem:
-        raise SetupError(f"{file} cannot be read: {problem}. Known missions: {', '.join(there)}") from problem
+        raise CommandError(
+            f"{file} cannot be read: {problem}. Known missions: {', '.join(there)}"
+        ) from problem
     except ConfigError as problem:
-        raise SetupError("\n  ".join([f"{file} cannot be used:", *problem.texts])) from problem
+        raise CommandError("\n  ".join([f"{file} cannot be used:", *problem.texts])) from problem

@@ -5,21 +5,22 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from server.platform.command_line import TAKE_OVER, with_settings
+from server.platform.command_line import TAKE_OVER, CommandError, with_settings
+from server.platform.data_path import SCENARIOS
 from server.platform.name_completion import complete_document, folder_of
-from server.platform.settings import Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from robot_runtime.experiments.scenario.document import Scenario
+    from server.platform.settings import Settings
 
 
 def _complete(ctx: click.Context, _: click.Parameter, incomplete: str) -> "list[CompletionItem]":
     from robot_runtime.experiments.scenario.library import SHIPPED
 
-    return complete_document(SHIPPED, folder_of(ctx).scenarios, incomplete)
+    return complete_document(SHIPPED, folder_of(ctx) / SCENARIOS, incomplete)
 
 
 SCENARIO = click.argument("file", metavar="SCENARIO", shell_complete=_complete)
@@ -35,7 +36,7 @@ def scenario() -> None:
 
 @scenario.command("list")
 @with_settings
-def list_all(settings: Settings) -> None:
+def list_all(settings: "Settings") -> None:
     """List the scenarios."""
     from server.features.scenarios.library import list_scenarios
 
@@ -46,7 +47,7 @@ def list_all(settings: Settings) -> None:
 @scenario.command()
 @SCENARIO
 @with_settings
-def check(settings: Settings, file: str) -> None:
+def check(settings: "Settings", file: str) -> None:
     """Show a scenario's events, or its problems."""
     _, scenario = _read(file, settings.data.scenarios)
     echo(_describe(scenario))
@@ -70,7 +71,7 @@ def check(settings: Settings, file: str) -> None:
 @TAKE_OVER
 @with_settings
 def run(
-    settings: Settings,
+    settings: "Settings",
     file: str,
     timing: Literal["simulated", "live"],
     board: Literal["host", "emulated"],
@@ -95,12 +96,12 @@ def _read(file: str, own: Path) -> "tuple[str, Scenario]":
         text = there[file] if file in there else load_text(Path(file))
         return text, read_scenario(text)
     except TextError as problem:
-        raise SetupError(f"{file} cannot be read: it {problem}") from problem
+        raise CommandError(f"{file} cannot be read: it {problem}") from problem
     except OSError as problem:
         known = ", ".join(there)
-        raise SetupError(f"{file} cannot be read: {problem}. Known scenarios: {known}") from problem
+        raise CommandError(f"{file} cannot be read: {problem}. Known scenarios: {known}") from problem
     except ConfigError as problem:
-        raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.texts])) from problem
+        raise CommandError("\n  ".join([f"{file} cannot be run:", *problem.texts])) from problem
 
 
 def _describe(scenario: "Scenario") -> str:

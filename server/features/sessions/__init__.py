@@ -1,12 +1,11 @@
 """The library of sessions: search, texts, bookmarks, replay and retention."""
 
 from server.feature import Feature
-from server.library.config import SessionsConfig
 
 FEATURE = Feature(
     name="sessions",
     place="both",
-    section=SessionsConfig,
+    section="server.library.config:SessionsConfig",
     routes=(
         "server.features.sessions.routes:router",
         "server.features.sessions.bookmark_routes:router",

@@ -4,23 +4,20 @@ Changes go through the server that uses the data folder, since only it may write
 a server the command makes them itself.
 """
 
-import asyncio
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from server.platform.command_line import name_error, with_settings
-from server.platform.folder_lock import claim
+from server.platform.command_line import CommandError, name_error, with_settings
 from server.platform.name_completion import SESSION_NUMBER
-from server.platform.running_server import ask, server_runs
-from server.platform.settings import DataFolder, Settings, SetupError
 from server.platform.terminal import echo
 
 if TYPE_CHECKING:
     from server.library.listing import Listing
     from server.library.schemas import SessionDetail
+    from server.platform.settings import DataFolder, Settings
     from server.recording.schemas import Session, SessionSummary
 
 SESSION = click.argument("session", type=SESSION_NUMBER)
@@ -41,7 +38,7 @@ def sessions() -> None:
 @click.option("--tag", multiple=True, help="Only sessions with this tag; can be repeated.")
 @click.option("--deleted", is_flag=True, help="Show the sessions in the bin instead.")
 @with_settings
-def list_sessions(settings: Settings, search: tuple[str, ...], tag: tuple[str, ...], deleted: bool) -> None:
+def list_sessions(settings: "Settings", search: tuple[str, ...], tag: tuple[str, ...], deleted: bool) -> None:
     """List sessions, newest first.
 
     With WORDS, only those that have each of them in name, notes, tags or scenario.
@@ -53,7 +50,7 @@ def list_sessions(settings: Settings, search: tuple[str, ...], tag: tuple[str, .
     try:
         selection = SessionSelection(search=" ".join(search), tag=list(tag), deleted=deleted)
     except ValidationError as problem:
-        raise SetupError("; ".join(name_error(error) for error in problem.errors())) from problem
+        raise CommandError("; ".join(name_error(error) for error in problem.errors())) from problem
     with _open_listing(settings) as listing:
         for page in listing.pages(selection):
             echo(_tabulate(page))
@@ -62,7 +59,7 @@ def list_sessions(settings: Settings, search: tuple[str, ...], tag: tuple[str, .
 @sessions.command()
 @SESSION
 @with_settings
-def show(settings: Settings, session: int) -> None:
+def show(settings: "Settings", session: int) -> None:
     """Show a session: contents, bookmarks, gaps."""
     with _open_listing(settings) as listing:
         echo(_describe(listing.detail(session)))
@@ -73,7 +70,7 @@ def show(settings: Settings, session: int) -> None:
 @click.argument("tags", nargs=-1)
 @click.option("--remove", multiple=True, metavar="TAG", help="Remove this tag; can be repeated.")
 @with_settings
-def tag(settings: Settings, session: int, tags: tuple[str, ...], remove: tuple[str, ...]) -> None:
+def tag(settings: "Settings", session: int, tags: tuple[str, ...], remove: tuple[str, ...]) -> None:
     """Add tags to a session, or remove some."""
     with _open_listing(settings) as listing:
         present = listing.find(session).tags
@@ -85,7 +82,7 @@ def tag(settings: Settings, session: int, tags: tuple[str, ...], remove: tuple[s
 @SESSION
 @click.argument("text")
 @with_settings
-def note(settings: Settings, session: int, text: str) -> None:
+def note(settings: "Settings", session: int, text: str) -> None:
     """Replace the note of a session."""
     _change(settings.data, session, note=text)
 
@@ -93,7 +90,7 @@ def note(settings: Settings, session: int, text: str) -> None:
 @sessions.command()
 @SESSION
 @with_settings
-def delete(settings: Settings, session: int) -> None:
+def delete(settings: "Settings", session: int) -> None:
     """Move a session to the bin."""
     _perform(settings.data, "delete", session, "is in the bin")
 
@@ -101,7 +98,7 @@ def delete(settings: Settings, session: int) -> None:
 @sessions.command()
 @SESSION
 @with_settings
-def restore(settings: Settings, session: int) -> None:
+def restore(settings: "Settings", session: int) -> None:
     """Take a session out of the bin."""
     _perform(settings.data, "restore", session, "is back")
 
@@ -115,28 +112,31 @@ def record() -> None:
 @click.argument("name", default="")
 @click.option("--note", default="", show_default=False, help="The purpose of this dive, its settings.")
 @with_settings
-def start(settings: Settings, name: str, note: str) -> None:
+def start(settings: "Settings", name: str, note: str) -> None:
     """Start a recording. NAME is the date and time by default."""
+    from server.platform.running_server import ask
+
     session = ask(settings.data, "POST", "/sessions", {"name": name, "note": note})
     echo(f"Recording of “{session['name']}” has begun; it is session {session['id']}.")
 
 
 @record.command()
 @with_settings
-def stop(settings: Settings) -> None:
+def stop(settings: "Settings") -> None:
     """End the present recording."""
     from server.library.listing import SessionSelection
+    from server.platform.running_server import ask
 
     with _open_listing(settings) as listing:
         recording = [session.id for session in listing.page(SessionSelection(state="recording")).sessions]
     if not recording:
-        raise SetupError("Nothing is being recorded.")
+        raise CommandError("Nothing is being recorded.")
     session = ask(settings.data, "POST", f"/sessions/{recording[0]}/stop")
     echo(f"Recording of “{session['name']}” has ended after {session['duration']:.1f} s.")
 
 
 @contextmanager
-def _open_listing(settings: Settings) -> "Iterator[Listing]":
+def _open_listing(settings: "Settings") -> "Iterator[Listing]":
     from server.library.listing import Listing
     from server.platform.shell_store import open_reader
 
@@ -144,7 +144,7 @@ def _open_listing(settings: Settings) -> "Iterator[Listing]":
         yield Listing(store)
 
 
-def _change(folder: DataFolder, session: int, **values: Any) -> None:
+def _change(folder: "DataFolder", session: int, **values: Any) -> None:
     from pydantic import ValidationError
 
     from server.library.schemas import SessionChanges
@@ -152,12 +152,16 @@ def _change(folder: DataFolder, session: int, **values: Any) -> None:
     try:
         changes = SessionChanges(**values).model_dump(exclude_unset=True)
     except ValidationError as problem:
-        raise SetupError("; ".join(error["msg"] for error in problem.errors())) from problem
+        raise CommandError("; ".join(error["msg"] for error in problem.errors())) from problem
     _perform(folder, "change", session, "is changed", **changes)
 
 
-def _perform(folder: DataFolder, action: str, session: int, outcome: str, **changes: Any) -> None:
+def _perform(folder: "DataFolder", action: str, session: int, outcome: str, **changes: Any) -> None:
+    import asyncio
+
     from server.library.catalogue import Catalogue
+    from server.platform.folder_lock import claim
+    from server.platform.running_server import ask, server_runs
     from server.platform.shell_store import open_writer
 
     if server_runs(folder):

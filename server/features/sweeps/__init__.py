@@ -1,11 +1,10 @@
 """Sweeps: a scenario with varied entries, run on this computer's cores or on a cluster."""
 
 from server.feature import Feature
-from server.features.sweeps.config import SweepsConfig
 
 FEATURE = Feature(
     name="sweeps",
-    section=SweepsConfig,
+    section="server.features.sweeps.config:SweepsConfig",
     place="both",
     optional=True,
     routes=("server.features.sweeps.routes:router",),

@@ -2,11 +2,14 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from server.platform.command_line import FILE, with_settings
-from server.platform.settings import Settings, SetupError
+from server.platform.command_line import FILE, CommandError, with_settings
+
+if TYPE_CHECKING:
+    from server.platform.settings import Settings
 
 
 @click.command()
@@ -19,7 +22,7 @@ from server.platform.settings import Settings, SetupError
 )
 @with_settings
 def sweep(
-    settings: Settings,
+    settings: "Settings",
     file: Path,
     table: Path | None,
     scheduler: str | None,
@@ -38,9 +41,9 @@ def sweep(
     try:
         text = load_text(file)
     except TextError as problem:
-        raise SetupError(f"{file} cannot be read: it {problem}") from problem
+        raise CommandError(f"{file} cannot be read: it {problem}") from problem
     except OSError as problem:
-        raise SetupError(f"{file} cannot be read: {problem.strerror}.") from problem
+        raise CommandError(f"{file} cannot be read: {problem.strerror}.") from problem
     config = settings.section(SweepsConfig)
     try:
         chosen = replace(
@@ -51,4 +54,4 @@ def sweep(
         )
         return run_sweep(text, table, settings, chosen, own=chosen != config)
     except ConfigError as problem:
-        raise SetupError("\n  ".join([f"{file} cannot be run:", *problem.texts])) from problem
+        raise CommandError("\n  ".join([f"{file} cannot be run:", *problem.texts])) from problem

@@ -1,5 +1,10 @@
 """Names that the shell completes."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from click.shell_completion import ShellComplete
 
@@ -41,6 +46,26 @@ async def test_a_session_is_found_by_its_number_and_by_its_name(here: Settings, 
     assert complete(here, "export", "2") == [second]
     assert complete(here, "report", "1", "noon") == [first]
     assert complete(here, "identify", "1", "--leave-out", "") == [second, first]
+
+
+def test_a_shell_waits_for_no_library_that_names_do_not_need(tmp_path: Path) -> None:
+    program = """
+import sys
+from click.shell_completion import ShellComplete
+from server.cli import mucat
+for words in ("sessions show", "export", "report", "identify", "scenario run", "mission try"):
+    ShellComplete(mucat, {}, "mucat", "_MUCAT_COMPLETE").get_completions(words.split(), "")
+slow = {"asyncio", "urllib.request", "robot_runtime.config", "robot_runtime.contract.limits"}
+print(*slow & set(sys.modules))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env=os.environ | {"MUCAT_DATA": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == []
 
 
 def test_without_a_database_there_is_no_session(here: Settings) -> None:

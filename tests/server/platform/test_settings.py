@@ -55,8 +55,8 @@ def test_errors_are_named(tmp_path: Path, text: str, why: str) -> None:
 def test_the_shipped_file_holds_the_defaults_of_every_feature(tmp_path: Path) -> None:
     shipped, plain = read(tmp_path, DEFAULT_CONFIG.read_text(encoding="utf-8")), read(tmp_path, "")
     for feature in list_features().values():
-        if feature.section is not None:
-            assert shipped.section(feature.section) == plain.section(feature.section)
+        if (section := feature.section_class) is not None:
+            assert shipped.section(section) == plain.section(section)
     assert shipped.server == plain.server
 
 
