@@ -16,10 +16,9 @@ from sqlmodel import SQLModel
 
 from migrations import HEAD
 from server.platform import models as _models  # noqa: F401 - its tables
-from server.platform.database_copies import open_database
 from server.platform.postgresql import CONNECT_SECONDS, WRITER, PostgreSQL
-from server.platform.schema import create_tables
 from server.platform.settings import SetupError
+from server.platform.sqlite_file import create_tables, open_database
 
 ROWS = 100
 """Rows at once in memory: a chunk of a film has up to a megabyte."""

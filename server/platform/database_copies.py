@@ -13,6 +13,7 @@ from typing import Literal
 
 from robot_runtime.durable_files import PART, make_folder, unfinished, write_whole
 from server.platform.settings import DataFolder
+from server.platform.sqlite_file import open_database
 
 Kind = Literal["backup", "before", "replaced"]
 """Copies made by hand, before an upgrade, and of a database that a restore replaced."""
@@ -38,6 +39,7 @@ def copy_database(
     """
     with _new_copy(path) as copy:
         if isinstance(location, str):
+            # Only a lab has the driver of PostgreSQL.
             from server.platform.archive_copies import copy_archive
 
             copy_archive(location, copy)
@@ -96,11 +98,6 @@ def _held(part: Path) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
-
-
-def open_database(database: Path, mode: Literal["ro", "rw"]) -> sqlite3.Connection:
-    """Open an existing database. Raise sqlite3.DatabaseError."""
-    return sqlite3.connect(f"{database.absolute().as_uri()}?mode={mode}", uri=True)
 
 
 def describe_sessions(database: Path) -> str:

@@ -61,17 +61,6 @@ class DatabaseEngine(ABC):
         """Return a few free pages to the disk; return how many are left, 0 where that is not needed."""
 
 
-def open_engine(location: Path | str) -> DatabaseEngine:
-    """Return the engine of a file of SQLite, or of the URL of a PostgreSQL database."""
-    if isinstance(location, Path):
-        from server.platform.sqlite import SQLite
-
-        return SQLite(location)
-    from server.platform.postgresql import PostgreSQL
-
-    return PostgreSQL(location)
-
-
 def read_location(text: str) -> Path | str:
     """Return the location of a database that a process was given as text."""
     return text if "://" in text else Path(text)

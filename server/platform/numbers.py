@@ -4,7 +4,7 @@ import sqlite3
 from contextlib import closing, suppress
 from pathlib import Path
 
-from server.platform.database_copies import open_database
+from server.platform.sqlite_file import open_database
 
 
 def carry_numbers(replaced: Path, restored: Path) -> None:

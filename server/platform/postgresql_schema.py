@@ -9,7 +9,7 @@ from sqlalchemy import Connection, create_engine, inspect, pool
 from sqlalchemy.exc import DBAPIError
 from sqlmodel import SQLModel
 
-from migrations import HEAD
+from migrations import HEAD, known_revisions, make_config
 from server.platform import models as _models  # noqa: F401 - its tables
 from server.platform.postgresql import CONNECT_SECONDS, PostgreSQL
 from server.platform.settings import SetupError
@@ -79,8 +79,6 @@ def _prepare(connection: Connection, url: str) -> None:
     if _read_revision(connection, tables, url) != HEAD:
         from alembic import command
 
-        from server.platform.schema import make_config
-
         config = make_config()
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
@@ -97,8 +95,6 @@ def _read_revision(connection: Connection, tables: Sequence[str], url: str) -> s
 
 
 def _refuse_unknown(revision: str, url: str) -> None:
-    from server.platform.schema import known_revisions
-
     if not revision >= FIRST or revision not in known_revisions():
         raise SetupError(
             f"The archive {url} was written by a newer version (its revision is {revision}, this "

@@ -6,27 +6,14 @@ import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from migrations import HEAD
-from server.platform.database_copies import (
-    DAMAGED_REMEDY,
-    copy_database,
-    new_copy_path,
-    open_database,
-    thin_out,
-)
+from migrations import HEAD, known_revisions, make_config
+from server.platform.database_copies import DAMAGED_REMEDY, copy_database, new_copy_path, thin_out
 from server.platform.settings import DataFolder, SetupError
+from server.platform.sqlite_file import INCREMENTAL, create_tables, open_database
 
-_NEW = Path(__file__).parents[2] / "migrations/schema.sql"
 _REVISION = f"INSERT INTO alembic_version VALUES ('{HEAD}');\n"
-
-
-if TYPE_CHECKING:
-    from alembic.config import Config
-
-INCREMENTAL = 2
-"""SQLite's auto_vacuum mode that returns free pages to the disk in small steps, on request."""
 
 
 def prepare(folder: DataFolder) -> None:
@@ -35,6 +22,7 @@ def prepare(folder: DataFolder) -> None:
     Raise SetupError where the database is of a newer version, damaged, or cannot be written.
     """
     if isinstance(location := folder.database_location, str):
+        # The models, which only an archive needs here, are slow to load.
         from server.platform.postgresql_schema import prepare_archive
 
         prepare_archive(location)
@@ -128,13 +116,6 @@ def refuse_unknown(revision: str, database: Path, folder: DataFolder | None = No
     )
 
 
-def known_revisions() -> set[str]:
-    """Return the schema revisions that this version can read or upgrade."""
-    from alembic.script import ScriptDirectory
-
-    return {script.revision for script in ScriptDirectory(_scripts()).walk_revisions()}
-
-
 def find_copy(folder: DataFolder, known: Collection[str]) -> Path | None:
     """Return the newest copy in the folder that has one of these revisions."""
     for copy in sorted(folder.backups.glob("mucat-*.db"), key=lambda path: path.stem[-19:], reverse=True):
@@ -159,24 +140,6 @@ def _create(database: Path) -> None:
     with closing(sqlite3.connect(database, isolation_level=None)) as connection:
         connection.execute("PRAGMA synchronous = FULL")
         create_tables(connection)
-
-
-def create_tables(connection: sqlite3.Connection) -> None:
-    """Make the tables of a new database, all or none. Raise sqlite3.DatabaseError."""
-    # The migrations would do the same in twenty times the time.
-    tables = _NEW.read_text(encoding="utf-8")
-    connection.execute(f"PRAGMA auto_vacuum = {INCREMENTAL}")
-    connection.executescript(f"BEGIN IMMEDIATE;\n{tables}COMMIT;")
-
-
-def make_config() -> "Config":
-    """Return Alembic's configuration, with the migrations."""
-    from alembic.config import Config
-
-    config = Config()
-    config.set_main_option("script_location", str(_scripts()))
-    config.set_main_option("path_separator", "os")
-    return config
 
 
 def _upgrade(database: Path) -> None:
@@ -209,7 +172,3 @@ def _driver_errors() -> Iterator[None]:
         yield
     except DBAPIError as problem:
         raise sqlite3.DatabaseError(str(problem.orig)) from problem
-
-
-def _scripts() -> Path:
-    return Path(__file__).parents[2] / "migrations"

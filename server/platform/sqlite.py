@@ -15,9 +15,9 @@ from sqlalchemy.exc import DBAPIError
 from server.platform.database_copies import DAMAGED_REMEDY
 from server.platform.disk_reserve import DiskReserve
 from server.platform.engine import DISK_FULL, DatabaseEngine, Space
-from server.platform.schema import INCREMENTAL
 from server.platform.searching import fold
 from server.platform.settings import RESERVE
+from server.platform.sqlite_file import INCREMENTAL
 
 PAGE_CACHE_KIB = 1024
 FULL = f"{DISK_FULL}: free some space on the computer that holds the data folder"

@@ -14,8 +14,10 @@ from sqlalchemy import Connection, Delete, UpdateBase, insert
 from sqlalchemy.exc import DBAPIError
 from sqlmodel import Session, SQLModel
 
-from server.platform.engine import DISK_FULL, Space, open_engine
+from server.platform.engine import DISK_FULL, DatabaseEngine, Space
 from server.platform.errors import InsufficientStorageError, UnavailableError
+from server.platform.postgresql import PostgreSQL
+from server.platform.sqlite import SQLite
 
 T = TypeVar("T")
 
@@ -42,7 +44,9 @@ class Reader:
 
     def __init__(self, location: Path | str) -> None:
         self.location = location
-        self._engine = open_engine(location)
+        self._engine: DatabaseEngine = (
+            SQLite(location) if isinstance(location, Path) else PostgreSQL(location)
+        )
         self._reader = self._engine.reading()
 
     @contextmanager

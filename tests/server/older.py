@@ -6,12 +6,11 @@ from collections.abc import Collection
 from typing import Any
 
 from alembic import command
-from alembic.config import Config
 from sqlalchemy import create_engine, pool
 
+from migrations import make_config
 from robot_runtime.contract.chunks import describe_topics, encode_rows
 from robot_runtime.contract.topics import BY_NAME
-from server.platform import schema
 from server.platform.settings import Settings
 from tests.server.blocks import depth_block
 
@@ -23,9 +22,7 @@ SOMETHING: dict[str, Any] = {"INTEGER": 1, "BOOLEAN": True, "FLOAT": 1.5, "VARCH
 def upgrade_to(settings: Settings, revision: str) -> None:
     """Make the database, with the tables of this revision."""
     engine = create_engine(f"sqlite:///{settings.data.database}", poolclass=pool.NullPool)
-    config = Config()
-    config.set_main_option("script_location", str(schema._scripts()))
-    config.set_main_option("path_separator", "os")
+    config = make_config()
     with engine.connect() as connection:
         config.attributes["connection"] = connection
         command.upgrade(config, revision)

@@ -254,8 +254,8 @@ READ_THEIR_OWN = {
     "server/platform/pidfile.py",
     "server/platform/report_page.py",
     "server/platform/running_server.py",
-    "server/platform/schema.py",
     "server/platform/settings.py",
+    "server/platform/sqlite_file.py",
     "server/platform/supply_voltage.py",
 }
 """Modules that read what this program, its release or the system has written, not what people hand over."""

@@ -1,5 +1,10 @@
-import type { Detection } from '../generated/topics';
-import type { Live } from './live.svelte';
+import type { Detection, State } from '../generated/topics';
+
+/** what is seen of the robot */
+export interface Sight {
+  readonly detections: readonly Detection[];
+  readonly state: State | null;
+}
 
 /** share of the time between two pictures by which a detection's may differ from the one shown, and still be drawn on it */
 const SAME_PICTURE = 0.6;
@@ -14,7 +19,7 @@ export function keepDetections(kept: readonly Detection[], newer: readonly Detec
 }
 
 /** Detection in this picture; null where that is of another one by more than `periods` between two searched, or not known. */
-export function foundIn({ detections, state }: Pick<Live, 'detections' | 'state'>, picture: { readonly time: number } | null, periods = SAME_PICTURE): Detection | null {
+export function foundIn({ detections, state }: Sight, picture: { readonly time: number } | null, periods = SAME_PICTURE): Detection | null {
   if (picture === null || state === null) return null;
   const away = ({ taken }: Detection) => Math.abs(taken - picture.time);
   const [detection] = detections.toSorted((one, other) => away(one) - away(other));

@@ -15,7 +15,6 @@ from server.platform.database_copies import (
     copy_database,
     describe_sessions,
     new_copy_path,
-    open_database,
     sum_file,
     thin_out,
 )
@@ -23,6 +22,7 @@ from server.platform.lab_config import LabConfig
 from server.platform.numbers import carry_numbers
 from server.platform.schema import explain, read_revision, refuse_unknown, upgrade
 from server.platform.settings import DataFolder, Settings, SetupError, read_settings
+from server.platform.sqlite_file import open_database
 from server.platform.user_files import CONFIG, LAB, NAMES, put_files, take_files
 
 LOGS = ("-wal", "-journal")

@@ -76,7 +76,8 @@ def survey(settings: Settings) -> Survey:
 
 def _look_at_database(folder: DataFolder) -> tuple[bool, str]:
     """Return True where this version can read the database; else its newest readable copy."""
-    from server.platform.schema import find_copy, known_revisions, read_revision
+    from migrations import known_revisions
+    from server.platform.schema import find_copy, read_revision
 
     if isinstance(location := folder.database_location, str):
         return _reads_archive(location), ""

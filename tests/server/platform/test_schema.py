@@ -13,26 +13,25 @@ from sqlalchemy import create_engine, pool
 from sqlmodel import SQLModel, select
 
 import server.platform.models  # noqa: F401 - declares the tables
-from migrations import HEAD
+from migrations import FOLDER, HEAD
 from server.library.catalogue import Catalogue
 from server.library.content import Recording
 from server.library.listing import SessionSelection
 from server.platform import schema
 from server.platform.database_copies import COPIES_MOST, copy_database
 from server.platform.settings import Settings, SetupError
+from server.platform.sqlite_file import INCREMENTAL
 from server.platform.store import Store
 from tests.server.older import ROWS, fill_tables, make_session, read_tables, upgrade_to
 
 Tables = dict[str, list[dict[str, Any]]]
 OLDER = [
-    revision.revision
-    for revision in ScriptDirectory(schema._scripts()).walk_revisions()
-    if revision.revision != HEAD
+    revision.revision for revision in ScriptDirectory(FOLDER).walk_revisions() if revision.revision != HEAD
 ]
 
 
 def test_the_newest_revision_is_the_server_s() -> None:
-    assert ScriptDirectory(schema._scripts()).get_heads() == [HEAD]
+    assert ScriptDirectory(FOLDER).get_heads() == [HEAD]
 
 
 def test_migrations_and_models_agree(settings: Settings) -> None:
@@ -56,7 +55,7 @@ def test_a_new_database_is_what_the_migrations_make(settings: Settings) -> None:
         with closing(sqlite3.connect(settings.data.database)) as database:
             # A table that was made anew has a line that says that no number was given yet.
             assert not any(database.execute("SELECT seq FROM sqlite_sequence WHERE seq != 0"))
-            assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
+            assert database.execute("PRAGMA auto_vacuum").fetchone() == (INCREMENTAL,)
             return sorted(line for line in database.iterdump() if "sqlite_sequence" not in line)
 
     schema._upgrade(settings.data.database)
@@ -155,7 +154,7 @@ def test_a_session_of_an_older_version_is_upgraded_found_and_read(settings: Sett
         assert (topic.name, topic.count, topic.first, topic.last) == ("depth", 10, 0.0, pytest.approx(0.18))
         assert b"".join(Recording.open(store, 1).rows("depth")) == ROWS
     with closing(sqlite3.connect(settings.data.database)) as database:
-        assert database.execute("PRAGMA auto_vacuum").fetchone() == (schema.INCREMENTAL,)
+        assert database.execute("PRAGMA auto_vacuum").fetchone() == (INCREMENTAL,)
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
 
 
