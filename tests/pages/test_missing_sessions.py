@@ -16,6 +16,9 @@ def test_an_address_without_sessions_shows_the_remedy(any_page: Page, site: Site
     assert any_page.evaluate(wider) == 0
 
 
-def test_a_replay_of_a_missing_session_is_reported(page: Page, site: Site) -> None:
+def test_a_replay_of_a_missing_session_leads_to_those_that_are_there(page: Page, site: Site) -> None:
     page.goto(f"{site.url}/#/replay/999999")
-    expect(page.get_by_role("alert").get_by_text("There is no session 999999")).to_be_visible()
+    problem = page.get_by_role("alert")
+    expect(problem.get_by_text("There is no session 999999")).to_be_visible()
+    problem.get_by_role("link", name="Go to Sessions").click()
+    expect(page.get_by_role("heading", name="Sessions", level=1)).to_be_visible()

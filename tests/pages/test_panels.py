@@ -115,3 +115,9 @@ def test_a_layout_of_another_version_is_refused(fresh: Page, tmp_path: Path) -> 
     expect(handle(page, "Unknown panel “sonar”")).to_be_visible()
     bar.get_by_role("button", name="Done").click()
     expect(page.get_by_role("region", name="sonar")).to_contain_text("which this version does not have")
+
+
+def test_what_is_read_aloud_alone_does_not_make_the_page_longer(fresh: Page) -> None:
+    expect(fresh.get_by_role("region", name="Camera")).to_be_visible()
+    main = fresh.get_by_role("main")
+    assert main.evaluate("(main) => main.scrollHeight - main.clientHeight") == 0

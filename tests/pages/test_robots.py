@@ -80,3 +80,6 @@ def test_an_empty_lab_says_how_a_robot_joins(browser: Browser, tmp_path: Path) -
         page.get_by_role("button", name="Make a code").click()
         # This lab has no TLS.
         expect(page.get_by_role("alert").filter(has_text="server.tls = true")).to_be_visible()
+        page.get_by_role("link", name="Sessions", exact=True).click()
+        page.get_by_role("link", name="Open Robots").click()
+        expect(page.get_by_text("No robot has joined yet")).to_be_visible()

@@ -22,7 +22,8 @@ export const sessions = {
     text: 'Recorded sessions are listed here. You can search, tag, replay, compare and export them. Arming the robot records one by itself.',
     recordFirst: 'Record the first session',
     toOperate: 'Open Operate',
-    lab: 'Add a robot under System: its sessions come here by themselves. Or import an archive.',
+    lab: 'The sessions of robots that have joined come here by themselves. Or import an archive.',
+    toRobots: 'Open Robots',
   },
   album: {
     title: 'Snapshots',

@@ -137,7 +137,7 @@ export const tune = {
   },
   parameters: {
     title: 'Parameters',
-    empty: { title: 'No parameters yet', text: 'They appear here when the runtime is connected.' },
+    empty: { title: 'No parameters yet', text: 'They appear here once the robot’s runtime is connected. System shows what is not.', toSystem: 'Open System' },
     allDefault: 'all at default',
     changedCount: (count: number) => `${count} changed`,
     search: 'Find parameters',
