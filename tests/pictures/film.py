@@ -123,10 +123,10 @@ def play(page: Page, stack: Stack, camera: Screencast) -> list[str]:
     with camera.shot("or watch it from outside"):
         press(page, page.get_by_role("button", name="Swap: show the bystander large"))
         wait(5)
-    with camera.shot("STOP is always in sight. Stopped, it floats up by itself"):
+    with camera.shot("STOP is always in sight, and stops the fins at once"):
         wait(CAPTION_SECONDS)
         press(page, page.get_by_role("button", name="STOP"))
-        wait(4)
+        wait(3)
     if alarms := find_alarms(stack):
         return alarms
     page.goto(f"{stack.url}/#/operate")
@@ -142,7 +142,7 @@ def play(page: Page, stack: Stack, camera: Screencast) -> list[str]:
     expect(curve).to_be_visible()
     wait(CAPTION_SECONDS)
     with camera.shot("Every dive is recorded. Its page tells what happened, and when"):
-        sweep_over(page, curve, 9)
+        sweep_over(page, curve, 8)
     numbers = name_numbers(stack)
     page.goto(f"{stack.url}/#/scenarios/sweeps/{numbers['sweep']}")
     cells = page.get_by_role("gridcell", name="kp")

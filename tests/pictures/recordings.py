@@ -120,10 +120,14 @@ def record_all(folder: Path, scratch: Path) -> None:
     (own / "held.toml").write_text(HELD.format(seed=1, controller="pid"))
 
 
-def compute_all(api: httpx.Client) -> None:
-    """Have the server compute the sweep, and the fit of one sea trial that the other checks."""
+def compute_sweep(api: httpx.Client) -> None:
+    """Have the server compute the sweep."""
     api.post("/sweeps", json={"text": SWEEP}).raise_for_status()
     _wait(lambda: all(sweep["state"] == "complete" for sweep in api.get("/sweeps").json()), "the sweep")
+
+
+def fit_craft(api: httpx.Client) -> None:
+    """Have the server fit one sea trial, which the other checks. Its result goes with the server."""
     fitted, check = find_sessions(api)["Sea trial"]
     api.post("/identification", json={"sessions": [fitted], "left_out": check}).raise_for_status()
     _wait(lambda: api.get("/identification").json()["active"] is None, "the fit")

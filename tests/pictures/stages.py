@@ -10,7 +10,7 @@ from tests.browser.site import Site
 from tests.pages.dive_site import DiveSite
 from tests.pages.lab_site import SWIMMING, LabSite, presence
 from tests.pictures.manual import Stage
-from tests.pictures.recordings import compute_all, find_sessions, record_all
+from tests.pictures.recordings import compute_sweep, find_sessions, fit_craft, record_all
 from tests.stack import Stack
 
 RECORDED = "recorded"
@@ -27,7 +27,7 @@ def record_past(scratch: Path) -> None:
     """Fill the folder of recordings in `scratch`."""
     record_all(scratch / RECORDED, scratch / "documents")
     with DiveSite(scratch / RECORDED) as site:
-        compute_all(site.api)
+        compute_sweep(site.api)
 
 
 @contextmanager
@@ -36,6 +36,7 @@ def open_stage(stage: Stage, scratch: Path) -> Iterator[Site]:
     match stage:
         case "desk":
             with DiveSite(scratch / RECORDED) as site:
+                fit_craft(site.api)
                 yield site
         case "robot":
             with Stack(scratch / "robot") as stack:
