@@ -9,13 +9,21 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, expect
 
-from tests.browser.opening import DESKTOP, PHONE, closing_pages, launched, opened_page, signed_in
+from tests.browser.opening import (
+    DESKTOP,
+    PHONE,
+    closing_pages,
+    launched,
+    opened_page,
+    signed_in,
+    unopened_page,
+)
 from tests.browser.site import Site
 from tests.waiting import SECONDS
 
 expect.set_options(timeout=1000 * SECONDS)
 
-__all__ = ["_no_page_is_left", "any_page", "browser", "cookies", "page"]
+__all__ = ["_no_page_is_left", "any_page", "browser", "cookies", "page", "unopened"]
 
 
 @pytest.fixture(scope="package")
@@ -42,6 +50,13 @@ def any_page(
 ) -> Iterator[Page]:
     """The page at both sizes; what its code complains about fails the test."""
     with opened_page(browser, site, cookies, request.param) as page:
+        yield page
+
+
+@pytest.fixture
+def unopened(browser: Browser, cookies: StorageState, _at_rest: None) -> Iterator[Page]:
+    """A page at desktop size that is not open yet."""
+    with unopened_page(browser, cookies, DESKTOP) as page:
         yield page
 
 

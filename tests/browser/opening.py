@@ -72,6 +72,14 @@ def signed_in(browser: Browser, site: Site) -> StorageState:
 @contextmanager
 def opened_page(browser: Browser, site: Site, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
     """The page at this size; what its code complains about fails the test."""
+    with unopened_page(browser, cookies, size) as page:
+        page.goto(site.first)
+        yield page
+
+
+@contextmanager
+def unopened_page(browser: Browser, cookies: StorageState, size: ViewportSize) -> Iterator[Page]:
+    """The same before it is opened, for tests that change what it hears from the first moment on."""
     # Charts then move once a second, which leaves the computer to what is tested.
     context = browser.new_context(
         viewport=size, storage_state=cookies, reduced_motion="reduce", color_scheme="dark"
@@ -79,7 +87,6 @@ def opened_page(browser: Browser, site: Site, cookies: StorageState, size: Viewp
     page = context.new_page()
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.goto(site.first)
     yield page
     context.close()
     assert complaints == [], complaints

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.browser.fixtures import _no_page_is_left, any_page, browser, cookies, page
+from tests.browser.fixtures import _no_page_is_left, any_page, browser, cookies, page, unopened
 from tests.browser.pages import stop_recordings
 from tests.pages.dive_site import DiveSite
 
-__all__ = ["_no_page_is_left", "any_page", "browser", "cookies", "page"]
+__all__ = ["_no_page_is_left", "any_page", "browser", "cookies", "page", "unopened"]
 
 
 @pytest.fixture(scope="package")

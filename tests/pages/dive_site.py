@@ -24,7 +24,7 @@ from tests.server.serving import serve
 from tests.stack import ROOT
 
 FLOAT_SECONDS = 1800.0
-PERIOD = 0.1
+PERIOD = 0.25
 """s between two blocks of a topic."""
 
 

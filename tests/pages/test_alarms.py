@@ -41,28 +41,28 @@ def with_an_alarm(message: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("address", ["missions/edit/two_depths", "tune/bench", "system"])
-def test_alarms_are_acknowledged_where_they_forbid_arming(page: Page, site: DiveSite, address: str) -> None:
+def test_alarms_are_acknowledged_where_they_forbid_arming(
+    unopened: Page, site: DiveSite, address: str
+) -> None:
     def hand_on(socket: WebSocketRoute) -> None:
         def change(message: str | bytes) -> None:
             socket.send(with_an_alarm(message) if isinstance(message, bytes) else message)
 
         socket.connect_to_server().on_message(change)
 
-    page.route_web_socket("**/api/live", hand_on)
-    page.goto(f"{site.url}/#/{address}")
-    page.reload()
-    with page.expect_response("**/api/robot/commands/acknowledge") as answer:
-        page.get_by_role("main").get_by_role("button", name="Acknowledge", exact=True).click()
+    unopened.route_web_socket("**/api/live", hand_on)
+    unopened.goto(f"{site.url}/#/{address}")
+    with unopened.expect_response("**/api/robot/commands/acknowledge") as answer:
+        unopened.get_by_role("main").get_by_role("button", name="Acknowledge", exact=True).click()
     assert answer.value.ok
-    expect(page.get_by_role("main").get_by_text(REASON)).to_be_visible()
+    expect(unopened.get_by_role("main").get_by_text(REASON)).to_be_visible()
 
 
-def test_the_fin_check_of_an_armed_robot_says_why_it_does_not_begin(page: Page, site: DiveSite) -> None:
-    flown = Flown(page)
+def test_the_fin_check_of_an_armed_robot_says_why_it_does_not_begin(unopened: Page, site: DiveSite) -> None:
+    flown = Flown(unopened)
     flown.mode, flown.alarms = "automatic", [{}]
-    page.goto(f"{site.url}/#/system")
-    page.reload()
-    check = page.get_by_role("region", name="Fin check")
+    unopened.goto(f"{site.url}/#/system")
+    check = unopened.get_by_role("region", name="Fin check")
     expect(check.get_by_text("The robot is armed already.")).to_be_visible()
     expect(check.get_by_role("button", name="Hold to check the fins")).to_be_disabled()
     # Nothing of it waits for an acknowledgement.

@@ -38,7 +38,7 @@ def with_markers(message: bytes) -> bytes:
     return changed
 
 
-def test_two_markers_of_one_number_are_drawn(page: Page) -> None:
+def test_two_markers_of_one_number_are_drawn(unopened: Page, site: DiveSite) -> None:
     sockets: list[WebSocketRoute] = []
 
     def hand_on(socket: WebSocketRoute) -> None:
@@ -48,10 +48,9 @@ def test_two_markers_of_one_number_are_drawn(page: Page) -> None:
         sockets.append(socket)
         socket.connect_to_server().on_message(change)
 
-    page.route_web_socket("**/api/live", hand_on)
-    page.reload()
-    page.get_by_role("link", name="Operate").click()
-    camera = page.get_by_role("region", name="Camera")
+    unopened.route_web_socket("**/api/live", hand_on)
+    unopened.goto(f"{site.url}/#/operate")
+    camera = unopened.get_by_role("region", name="Camera")
     expect(camera.get_by_text("No picture yet")).to_be_visible()
     # The state comes after the greeting, at which the page forgets a picture of another time.
     expect(camera.get_by_label("Vision rate")).to_be_visible()
@@ -59,12 +58,11 @@ def test_two_markers_of_one_number_are_drawn(page: Page) -> None:
     expect(camera.locator("svg text", has_text="marker 7")).to_have_count(2)
 
 
-def test_a_picture_that_stops_is_said_with_its_reason(page: Page) -> None:
-    flown = Flown(page)
+def test_a_picture_that_stops_is_said_with_its_reason(unopened: Page, site: DiveSite) -> None:
+    flown = Flown(unopened)
     flown.camera_failure = "No picture: the camera /dev/video0 gives no picture; check its plug."
-    page.reload()
-    page.get_by_role("link", name="Operate").click()
-    camera = page.get_by_role("region", name="Camera")
+    unopened.goto(f"{site.url}/#/operate")
+    camera = unopened.get_by_role("region", name="Camera")
     expect(camera.get_by_text(flown.camera_failure)).to_be_visible()
     expect(camera.get_by_text("No picture")).to_have_count(1)
     for topic in ("picture", "camera"):
@@ -74,11 +72,11 @@ def test_a_picture_that_stops_is_said_with_its_reason(page: Page) -> None:
     )
     expect(camera.get_by_text(re.compile(r"picture is \d.* old"))).to_be_visible()
     # All else goes on: the depth is of now, and commands are sent.
-    expect(page.get_by_role("region", name="Depth over time").get_by_text("old")).to_have_count(0)
+    expect(unopened.get_by_role("region", name="Depth over time").get_by_text("old")).to_have_count(0)
     camera.get_by_label("Vision rate").select_option("8")
     expect(camera.get_by_role("alert")).to_have_count(1)
-    page.get_by_role("button", name="STOP").click()
-    expect(page.get_by_role("button", name="Stopped")).to_be_visible()
+    unopened.get_by_role("button", name="STOP").click()
+    expect(unopened.get_by_role("button", name="Stopped")).to_be_visible()
     flown.camera_failure = None
     flown.show("camera")
     expect(camera.get_by_role("alert")).to_have_count(0)

@@ -1,4 +1,4 @@
-"""The help pages: they render, their search works, and no request leaves the robot."""
+"""Help: it renders, its search works, no request leaves the robot; each page has its chapter and title."""
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -38,13 +38,20 @@ def test_the_help_renders_and_searches_without_a_foreign_request(
     assert complaints == []
 
 
-def test_each_page_links_to_its_chapter(any_page: Page, site: Site) -> None:
+def test_each_page_links_to_its_chapter_and_has_a_title_that_begins_with_its_heading(
+    any_page: Page, site: Site
+) -> None:
     fill(site)
     chapters: dict[str, str] = {}
+    titles: dict[str, str] = {}
     for view in PAGES:
         show(any_page, site, view)
         link = any_page.get_by_role("link", name="Help for this page")
         chapters[view.name] = link.get_attribute("href") or ""
+        heading = any_page.get_by_role("heading", level=1)
+        expect(heading).to_have_count(1)
+        expect(any_page).to_have_title(f"{' '.join((heading.text_content() or '').split())} · µ-CAT")
+        titles[view.name] = any_page.title()
     assert chapters["operate"] == "/help/use/operate/"
     assert len(set(chapters.values())) >= 9
     for address in sorted(set(chapters.values())):
@@ -52,3 +59,8 @@ def test_each_page_links_to_its_chapter(any_page: Page, site: Site) -> None:
         answer = any_page.request.get(site.url + path)
         assert answer.status == 200, address
         assert not anchor or f'id="{anchor}"' in answer.text(), address
+    assert titles["operate"] == "Operate · µ-CAT"
+    assert titles["sessions"] == "Sessions · µ-CAT"
+    views = [name for name in titles if name.startswith(("tune-", "session-")) or name == "sweeps"]
+    # Tune's views are one page, so are those of scenarios, and those of a session have its name.
+    assert len(set(titles.values())) >= len(PAGES) - len(views) + 1, titles

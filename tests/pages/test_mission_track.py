@@ -8,7 +8,7 @@ from robot_runtime.contract.documents import Mission, MissionStepState, Track
 from robot_runtime.contract.missions import MissionPhase
 from robot_runtime.contract.topics import BY_NAME
 from robot_runtime.transport.blocks import Block, pack_documents, row
-from tests.browser.opening import DESKTOP, PHONE, opened_page
+from tests.browser.opening import DESKTOP, PHONE, unopened_page
 from tests.pages.dive_site import DiveSite
 from tests.pages.flying import Flown
 
@@ -66,11 +66,10 @@ def way(number: int) -> Block:
 def test_the_way_is_in_view_while_a_mission_runs(
     browser: Browser, site: DiveSite, cookies: StorageState, size: ViewportSize
 ) -> None:
-    with opened_page(browser, site, cookies, size) as page:
+    with unopened_page(browser, cookies, size) as page:
         flown = Flown(page)
         flown.mode = "automatic"
         page.goto(f"{site.url}/#/operate")
-        page.reload()
         # A mission of a robot that is not armed has broken off.
         expect(page.get_by_role("region", name="Arm", exact=True).get_by_text("Armed")).to_be_visible()
         flown.send(way(0))

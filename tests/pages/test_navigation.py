@@ -1,9 +1,8 @@
-"""Navigation: each page has its title, its heading gets the focus, and the current tab is in view."""
+"""Navigation: the heading of the next page gets the focus, and the current tab is in view."""
 
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
-from tests.browser.pages import PAGES, fill, show
 from tests.browser.site import Site
 
 NARROW: ViewportSize = {"width": 300, "height": 640}
@@ -12,22 +11,6 @@ TABS = {
     "parameters": "Parameters",
     "vision": "Vision",
 }
-
-
-def test_every_page_has_a_title_that_begins_with_its_heading(page: Page, site: Site) -> None:
-    fill(site)
-    titles = {}
-    for view in PAGES:
-        show(page, site, view)
-        heading = page.get_by_role("heading", level=1)
-        expect(heading).to_have_count(1)
-        expect(page).to_have_title(f"{' '.join((heading.text_content() or '').split())} · µ-CAT")
-        titles[view.name] = page.title()
-    assert titles["operate"] == "Operate · µ-CAT"
-    assert titles["sessions"] == "Sessions · µ-CAT"
-    views = [name for name in titles if name.startswith(("tune-", "session-")) or name == "sweeps"]
-    # Tune's views are one page, so are those of scenarios, and those of a session have its name.
-    assert len(set(titles.values())) >= len(PAGES) - len(views) + 1, titles
 
 
 def test_signing_in_has_a_title(browser: Browser, site: Site) -> None:

@@ -14,15 +14,15 @@ MINUTES = re.compile(r"\b0\d:\d\d\b")
 """A duration below ten minutes."""
 
 
-def test_the_duration_of_a_recording_is_by_the_robot_s_clock(page: Page, site: Site) -> None:
-    page.clock.install(time=AHEAD)
+def test_the_duration_of_a_recording_is_by_the_robot_s_clock(unopened: Page, site: Site) -> None:
+    unopened.clock.install(time=AHEAD)
     session = site.api.post("/sessions", json={"name": "timed"}).raise_for_status().json()["id"]
     try:
-        page.reload()
-        recording = page.get_by_role("banner").get_by_role("button", name=re.compile("REC"))
+        unopened.goto(site.first)
+        recording = unopened.get_by_role("banner").get_by_role("button", name=re.compile("REC"))
         expect(recording).to_have_text(re.compile(r"REC\s*0\d:\d\d$"))
-        page.get_by_role("link", name="Sessions").click()
-        recording_now = page.get_by_role("region", name="Recording now")
+        unopened.get_by_role("link", name="Sessions").click()
+        recording_now = unopened.get_by_role("region", name="Recording now")
         expect(recording_now.get_by_role("definition").first).to_have_text(MINUTES)
     finally:
         site.api.post(f"/sessions/{session}/stop").raise_for_status()
@@ -38,9 +38,9 @@ def test_the_validity_of_an_invitation_is_by_the_robot_s_clock(browser: Browser,
         expect(people.get_by_text(re.compile(r"valid for (10:00|09:\d\d)"))).to_be_visible()
 
 
-def test_the_clock_shows_the_robots_time(page: Page) -> None:
-    page.clock.install(time=AHEAD)
-    page.reload()
+def test_the_clock_shows_the_robots_time(unopened: Page, site: Site) -> None:
+    unopened.clock.install(time=AHEAD)
+    unopened.goto(site.first)
     now = datetime.now()
     minutes = "|".join(f"{moment:%H:%M}" for moment in (now, now + timedelta(minutes=1)))
-    expect(page.get_by_title("Robot’s clock")).to_have_text(re.compile(f"^({minutes})"))
+    expect(unopened.get_by_title("Robot’s clock")).to_have_text(re.compile(f"^({minutes})"))

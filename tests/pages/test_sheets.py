@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import Browser, Page, StorageState, ViewportSize, expect
 
-from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, SMALL_PHONE, opened_page
+from tests.browser.opening import DESKTOP, LYING_PHONE, PHONE, SMALL_PHONE, unopened_page
 from tests.pages.dive_site import DiveSite
 from tests.pages.flying import Flown
 
@@ -32,11 +32,10 @@ def whole(page: Page) -> bool:
 def test_no_sheet_and_no_drawer_lies_over_stop(
     browser: Browser, site: DiveSite, cookies: StorageState, size: ViewportSize, address: str
 ) -> None:
-    with opened_page(browser, site, cookies, size) as page:
+    with unopened_page(browser, cookies, size) as page:
         flown = Flown(page)
         flown.alarms = ALARMS
         page.goto(f"{site.url}/#/{address}")
-        page.reload()
         expect(page.get_by_role("button", name=re.compile("^8 alarms"))).to_be_visible()
         openers = page.locator("button.opener:visible")
         assert openers.count() >= (4 if address == "people" else 3)

@@ -173,8 +173,6 @@ DRAW_NOTHING = """() => {
 def open_to_arm(page: Page, site: DiveSite) -> Locator:
     """Return the button to arm, once it would."""
     page.goto(f"{site.url}/#/operate")
-    # The address alone opens no new socket.
-    page.reload()
     panel = page.get_by_role("region", name="Arm")
     expect(panel.get_by_text("Ready to arm")).to_be_visible()
     page.evaluate(FOLLOW_REQUESTS)
@@ -187,24 +185,24 @@ def asks_to_arm(page: Page) -> bool:
 
 
 @pytest.mark.parametrize("end", ENDS)
-def test_a_hold_that_was_ended_does_not_arm(page: Page, site: DiveSite, end: str) -> None:
-    button = open_to_arm(page, site)
+def test_a_hold_that_was_ended_does_not_arm(unopened: Page, site: DiveSite, end: str) -> None:
+    button = open_to_arm(unopened, site)
     button.evaluate(HOLD_AND_END % ENDS[end])
     if end != "another page":
         expect(button).to_have_text("Release, then hold again")
-    assert not asks_to_arm(page)
+    assert not asks_to_arm(unopened)
 
 
-def test_a_reason_that_comes_and_goes_during_a_hold_does_not_arm(page: Page, site: DiveSite) -> None:
-    refusals = Refusals(page)
-    button = open_to_arm(page, site)
-    page.evaluate(DRAW_NOTHING)
+def test_a_reason_that_comes_and_goes_during_a_hold_does_not_arm(unopened: Page, site: DiveSite) -> None:
+    refusals = Refusals(unopened)
+    button = open_to_arm(unopened, site)
+    unopened.evaluate(DRAW_NOTHING)
     button.dispatch_event("pointerdown", {"button": 0})
     refusals.reason = REASON
     expect(button).to_have_text("Not now: see below")
     refusals.reason = None
     expect(button).to_have_text("Release, then hold again")
-    page.evaluate("drawOn()")
-    assert not asks_to_arm(page)
+    unopened.evaluate("drawOn()")
+    assert not asks_to_arm(unopened)
     button.dispatch_event("pointerup")
     expect(button).to_have_text("Hold to arm")

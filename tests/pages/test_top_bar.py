@@ -48,6 +48,8 @@ FRAME = """([width, address]) => {
 OVERLAPS = """async ([widths, breaks]) => {
     const frame = document.querySelector('iframe'), inner = frame.contentWindow, found = [], heights = {};
     const top = inner.document.querySelector('header.top');
+    // What is below the bar would be laid out again at each width, too.
+    inner.document.querySelector('.view').style.display = 'none';
     const dimmed = () => top.querySelectorAll('.dimmed').length;
     const faded = dimmed();
     let last = Infinity;

@@ -112,7 +112,7 @@ def test_runs_lie_over_each_other_and_stand_in_the_address(page: Page, site: Div
     expect(figures.get_by_role("columnheader")).to_have_count(3)
 
 
-def test_the_runs_are_asked_for_once_when_one_has_ended(page: Page, site: DiveSite) -> None:
+def test_the_runs_are_asked_for_once_when_one_has_ended(unopened: Page, site: DiveSite) -> None:
     sockets: list[WebSocketRoute] = []
 
     def join(socket: WebSocketRoute) -> None:
@@ -122,9 +122,9 @@ def test_the_runs_are_asked_for_once_when_one_has_ended(page: Page, site: DiveSi
     def asked_after(run: int) -> int:
         last = {"id": run, "kind": "step", "loop": "depth"}
         sockets[-1].send(json.dumps({"op": "tuning", "active": None, "last": last}))
-        return int(page.evaluate("asked"))
+        return int(unopened.evaluate("asked"))
 
-    page.add_init_script("""
+    unopened.add_init_script("""
         window.asked = 0;
         const whole = window.fetch;
         window.fetch = (...args) => {
@@ -132,10 +132,9 @@ def test_the_runs_are_asked_for_once_when_one_has_ended(page: Page, site: DiveSi
             return whole(...args);
         };
     """)
-    page.route_web_socket(re.compile("/api/live"), join)
-    page.goto(f"{site.url}/#/tune/bench")
-    page.reload()
-    expect(page.get_by_text("No run yet")).to_be_visible()
+    unopened.route_web_socket(re.compile("/api/live"), join)
+    unopened.goto(f"{site.url}/#/tune/bench")
+    expect(unopened.get_by_text("No run yet")).to_be_visible()
     first = asked_after(7)
     assert first > 0
     # The server sends the last run with each report of the next one.

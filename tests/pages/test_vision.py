@@ -31,7 +31,7 @@ def jpeg(picture: Picture) -> bytes:
 
 @pytest.mark.parametrize(("card_share", "warned"), [(0.25, False), (0.9, False), (1.0, True)])
 def test_the_mask_of_a_picked_colour_is_shown_before_it_is_saved(
-    page: Page, site: DiveSite, card_share: float, warned: bool
+    unopened: Page, site: DiveSite, card_share: float, warned: bool
 ) -> None:
     picture = water_with_card(card_share)
     sockets: list[WebSocketRoute] = []
@@ -47,18 +47,17 @@ def test_the_mask_of_a_picked_colour_is_shown_before_it_is_saved(
         ranges = {part: getattr(colour, part) for part in ("hue", "saturation", "value")}
         return {"colour": ranges, "share": share, "mask": mask}
 
-    page.route("**/api/vision/pick", lambda route: route.fulfill(json=pick(0.5, 0.95)))
-    page.route_web_socket("**/api/live", hand_on)
-    page.goto(f"{site.url}/#/tune/vision")
-    page.reload()
+    unopened.route("**/api/vision/pick", lambda route: route.fulfill(json=pick(0.5, 0.95)))
+    unopened.route_web_socket("**/api/live", hand_on)
+    unopened.goto(f"{site.url}/#/tune/vision")
     # The settings come after the greeting, at which the page forgets a picture of another time.
-    expect(page.get_by_role("region", name="Mask of yellow")).to_be_visible()
+    expect(unopened.get_by_role("region", name="Mask of yellow")).to_be_visible()
     sockets[-1].send(Block.of(BY_NAME["picture"], 1, 0, row(1.0, jpeg(picture))).data)
-    page.get_by_role("button", name="Camera picture").click()
+    unopened.get_by_role("button", name="Camera picture").click()
 
-    preview = page.get_by_role("region", name=PREVIEW)
+    preview = unopened.get_by_role("region", name=PREVIEW)
     expect(preview.get_by_role("img")).to_have_js_property("naturalWidth", 320)
     expect(preview.get_by_text("covers nearly the whole picture")).to_have_count(int(warned))
-    page.get_by_role("button", name="Discard").click()
+    unopened.get_by_role("button", name="Discard").click()
     expect(preview).to_have_count(0)
-    expect(page.get_by_role("region", name="Mask of yellow")).to_be_visible()
+    expect(unopened.get_by_role("region", name="Mask of yellow")).to_be_visible()
