@@ -473,8 +473,7 @@ def test_a_viewer_sees_and_checks_and_changes_nothing(browser: Browser, site: Si
 
 
 def test_an_open_card_fits_the_screen_and_is_accessible(any_page: Page, site: Site) -> None:
-    any_page.add_init_script(path=AXE)
-    any_page.reload()
+    any_page.evaluate(AXE.read_text())
     keep(site, "accessible")
     open_mission(any_page, site, "accessible")
     card(any_page, "2").click()

@@ -127,10 +127,9 @@ def test_a_sweep_is_planned_and_its_problems_stand_in_their_lines(page: Page, sw
 
 
 def test_no_view_of_sweeps_has_a_serious_violation(page: Page, sweeps: DiveSite) -> None:
-    page.context.add_init_script(path=AXE)
+    page.evaluate(AXE.read_text())
     for address in ("", f"/{GRID}", f"/{LINE}", f"/{GRID}?variant={WITHOUT_FIGURES}", f"/{CANCELLED}"):
         page.goto(f"{sweeps.url}/#/scenarios/sweeps{address}")
-        page.reload()
         expect(page.get_by_text(re.compile("Loading…|Checking…"))).to_have_count(0)
         expect(page.get_by_role("heading", level=1)).to_be_visible()
         assert faults_in_both_themes(page) == [], address
