@@ -22,7 +22,7 @@ from tests.shell import ShellAuth
 from tests.waiting import SECONDS
 
 ROOT = Path(__file__).resolve().parents[1]
-_POLL = 0.05
+_POLL = 0.1
 
 
 def free_port() -> int:

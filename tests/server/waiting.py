@@ -8,6 +8,7 @@ from typing import Any
 import psutil
 
 from tests.waiting import SECONDS as SECONDS
+from tests.waiting import pause
 
 SOCKET_LIMITS: dict[str, Any] = {"open_timeout": SECONDS, "ping_timeout": SECONDS}
 """Options of a WebSocket's client; its own 10 s and 20 s may pass on a busy computer."""
@@ -15,10 +16,13 @@ SOCKET_LIMITS: dict[str, Any] = {"open_timeout": SECONDS, "ping_timeout": SECOND
 
 async def until(condition: Callable[[], object], what: str, seconds: float = SECONDS) -> None:
     """Wait in the event loop until the condition holds. Fails with `what` when it never does."""
-    end = time.monotonic() + seconds
+    begin = time.monotonic()
+    end = begin + seconds
     while not condition():
-        assert time.monotonic() < end, f"waited {seconds:g} s in vain for {what}"
-        await asyncio.sleep(0.005)
+        now = time.monotonic()
+        assert now < end, f"waited {seconds:g} s in vain for {what}"
+        await asyncio.sleep(pause(now - begin))
+        begin = time.monotonic()
 
 
 def alive(pid: int) -> bool:
