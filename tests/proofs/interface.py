@@ -35,6 +35,7 @@ from websockets.typing import Origin
 from robot_runtime.config import RobotConfig
 from server.features.events.config import EventsConfig
 from server.health.monitor import HealthMonitor
+from server.http.sign_in.policy import DECLARED, Need
 from server.platform.settings import DataFolder, Settings, make_folders
 from server.stream import bridge
 from tests.server.blocks import depth_block, state_block
@@ -49,6 +50,8 @@ SLOW = {"importSession": 10}
 """Operations that start a process, and for how many questions to others one is put to them."""
 NOBODY = EventsConfig(mqtt="mqtt://127.0.0.1:1")
 """A broker that is not there."""
+READS = {Need.NOTHING.name.lower(), Need.VIEWER.name.lower()}
+"""Needs of operations that no control bears on."""
 SEED = 5
 PATIENCE = 60.0
 """s for an answer, on a busy computer."""
@@ -99,7 +102,8 @@ class Surface:
         def ask(case: AnyCase, there: bool) -> None:
             if there and "session" in (case.path_parameters or {}):
                 case.path_parameters["session"] = 1
-            self.take_control()
+            if operation.definition.raw[DECLARED] not in READS:
+                self.take_control()
             response = case.call(base_url=self.url, session=self.session, timeout=PATIENCE)
             case.validate_response(response, checks=CHECKS)
 

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Iterator
+from functools import cache
 
 import pytest
 
@@ -14,6 +15,7 @@ from tests.proofs.interface import Surface, run_surface
 EXAMPLES = 12
 
 
+@cache
 def operations() -> list[str]:
     app = create_app(Settings(data=DataFolder(ROOT), config=ROOT / "robot.toml", every_feature=True))
     paths = app.openapi()["paths"].values()
