@@ -28,5 +28,5 @@ export default defineConfig({
     rolldownOptions: { output: { codeSplitting: { groups: [{ name: (id, modules) => (isFirst(id, modules) ? 'first' : null) }] } } },
   },
   server: { proxy: { '/api': { target: 'http://127.0.0.1:8000', ws: true } } },
-  test: { include: ['tests/**/*.test.ts'], environment: 'node', pool: 'threads', isolate: false, setupFiles: ['tests/browser.ts'] },
+  test: { include: ['tests/**/*.test.ts'], environment: 'node', pool: 'threads', setupFiles: ['tests/browser.ts'] },
 });

@@ -128,7 +128,7 @@ describe('Arranger', () => {
 
 describe('layouts that come with the program', () => {
   it.each([1440, 2560])('stand well on a screen of %i px', (innerWidth) => {
-    vi.stubGlobal('window', { innerWidth });
+    globalThis.window = { innerWidth } as Window & typeof globalThis;
     for (const { layout } of SHIPPED) {
       const { panels: placed } = layout();
       expect(readLayout(layout())).toEqual(layout());
