@@ -143,7 +143,7 @@ def packets_page() -> str:
     parts = [fill("packets", frame=FRAME_BYTES_MAX, definitions=DEFINITIONS_HASH)]
     for packet in PACKETS.values():
         reliable = ", reliable" if packet.reliable else ""
-        lead = f"`0x{packet.type:02X}`, {packet.describe_size()} bytes{reliable}. {_one_line(packet)}\n"
+        lead = f"`0x{packet.type:02X}`, {packet.describe_size()}{reliable}. {_one_line(packet)}\n"
         parts += [f"## {packet.__name__}\n", lead]
         lines = [_number_line(name, wire) for name, wire in packet.wires.items()]
         lines += [_text_line(*packet.tail)] if packet.tail else []

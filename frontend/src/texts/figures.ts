@@ -29,7 +29,7 @@ export const figures = {
   spread: 'Distribution',
   course: 'Over time',
   periods: { day: 'by day', week: 'by week', month: 'by month', year: 'by year' },
-  counted: (values: number, sessions: number) => `${values} values of ${sessions} sessions`,
+  counted: (values: number, sessions: number) => `${values} ${values === 1 ? 'value' : 'values'} of ${sessions} ${sessions === 1 ? 'session' : 'sessions'}`,
   waiting: (count: number) => (count === 1 ? '1 session is still to be measured.' : `${count} sessions are still to be measured.`),
   median: 'Median',
   middle: 'Middle half',

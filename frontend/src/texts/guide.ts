@@ -68,6 +68,7 @@ export const guide = {
     },
   },
   acknowledge: {
+    title: 'Acknowledge the stop',
     text: 'The robot stopped by itself. On the page **Operate**, read why, and press **Acknowledge**.',
     robot: 'see to the cause first.',
   },

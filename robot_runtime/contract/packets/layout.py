@@ -125,9 +125,11 @@ class Record:
 
     @classmethod
     def describe_size(cls) -> str:
-        """Return the lengths that `from_bytes` accepts, as text."""
+        """Return the lengths that `from_bytes` accepts, in words."""
         size = cls.layout.size
-        return f"{size}" if cls.tail is None else f"{size + 1} to {size + 1 + cls.tail[1].max_bytes}"
+        if cls.tail is not None:
+            return f"{size + 1} to {size + 1 + cls.tail[1].max_bytes} bytes"
+        return "1 byte" if size == 1 else f"{size} bytes"
 
 
 R = TypeVar("R", bound=Record)
