@@ -22,7 +22,7 @@ from server.features.panels.scripts import list_panels
 from server.features.scenarios import command as scenarios
 from server.features.vision.routes import read_document as read_vision
 from server.platform.command_line import CommandError
-from server.platform.settings import Settings
+from server.platform.settings import Settings, SetupError
 from tests.server.serving import Served
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -91,7 +91,7 @@ def read(name: str, data: bytes, settings: Settings) -> object:
 def refusal(name: str, data: bytes, settings: Settings) -> str:
     try:
         result = read(name, data, settings)
-    except (ConfigError, CommandError, ProfileError, OutletError) as problem:
+    except (ConfigError, CommandError, ProfileError, OutletError, SetupError) as problem:
         result = str(problem)
     assert isinstance(result, str), result
     assert not MISLEADING.search(result), result
