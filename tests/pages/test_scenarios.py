@@ -5,7 +5,7 @@ import tomllib
 
 from playwright.sync_api import Page, Route, expect
 
-from robot_runtime.experiments.scenario.library import shipped_scenarios
+from robot_runtime.experiments.scenario.library import SHIPPED, shipped_scenarios
 from server.platform.settings import DataFolder
 from tests.browser.code import draft_of, write_code
 from tests.browser.scenarios import open_scenarios
@@ -14,7 +14,8 @@ from tests.pages.dive_site import DiveSite
 
 def test_the_shipped_scenarios_are_shown_with_their_events(any_page: Page) -> None:
     open_scenarios(any_page)
-    expect(any_page.get_by_role("radio")).to_have_count(8)
+    # And two places to run them.
+    expect(any_page.get_by_role("radio")).to_have_count(len(SHIPPED) + 2)
     expect(any_page.get_by_role("radio", name="In simulation")).to_be_checked()
     expect(any_page.get_by_role("radio", name=re.compile("Figure 14"))).to_be_checked()
     happens = any_page.get_by_role("list", name="Events").get_by_role("listitem")
