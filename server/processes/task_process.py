@@ -28,7 +28,10 @@ class TaskProcess:
     async def start(cls, module: str, *arguments: str) -> Self:
         """Start `python -m MODULE ARGUMENTS`. Raise OSError."""
         command = [sys.executable, "-m", module, *arguments]
-        return cls(await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE))
+        # In a session of its own: a terminal's Ctrl-C is meant for the server, which ends it.
+        return cls(
+            await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE, start_new_session=True)
+        )
 
     @property
     def pid(self) -> int:
