@@ -40,7 +40,7 @@ def measure() -> dict[str, float]:
     pictures come again.
     """
     uncompressed = _with_video("video", uncompressed_video(), "crashed the decoder")
-    return _with_faults() | uncompressed | _with_video("eating", _huge_video(), "needed more memory")
+    return _with_faults() | uncompressed | _with_video("eating", _huge_video(), "holds no picture")
 
 
 def _with_faults() -> dict[str, float]:
