@@ -7,14 +7,13 @@ the same time, so that theirs add up.
 import os
 import time
 from dataclasses import replace
-from pathlib import Path
 
-import robot_runtime.experiments.scenario
 from robot_runtime.experiments.scenario.boards import boards
 from robot_runtime.experiments.scenario.document import read_scenario
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from robot_runtime.experiments.scenario.run import AFTERWARDS, PRELUDE, ScenarioRun, Unheard
 
-_SCENARIO = Path(robot_runtime.experiments.scenario.__file__).parent / "shipped/hover_in_a_current.toml"
+_SCENARIO = "hover_in_a_current"
 
 
 def measure() -> dict[str, float]:
@@ -31,7 +30,7 @@ def measure() -> dict[str, float]:
 
 def _speeds(board: str, duration: float) -> tuple[float, float]:
     """Return the speeds by the processor's time, and by the wall's."""
-    whole = read_scenario(_SCENARIO.read_text())
+    whole = read_scenario(shipped_scenarios()[_SCENARIO])
     events = tuple(event for event in whole.events if event.at <= duration)
     run = ScenarioRun(replace(whole, duration=duration, events=events), boards()[board], Unheard())
     began, wall = _processor_time(), time.monotonic()

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
+from robot_runtime.experiments.scenario.library import shipped_scenarios
 from server.analysis.definitions import RUN_FIGURES
 from server.features.sweeps.run_task import RunOutcome, WorkerIdentity
 from server.features.sweeps.store import StoredRun, SweepStore
 from server.platform.models import SweepRow
 from server.platform.settings import Settings
 from server.platform.store import Store
-from tests.stack import ROOT
 
 SCENARIO = "hover_in_a_current"
 KP, KD = "control.gains.pid.kp", "control.gains.pid.kd"
@@ -53,7 +53,6 @@ async def _add(
     state: str,
     runs: int | None = None,
 ) -> None:
-    scenario = ROOT / f"robot_runtime/experiments/scenario/shipped/{SCENARIO}.toml"
     means: dict[int, list[float]] = {}
     for run in done:
         if (value := run.outcome.figures.get("rmse")) is not None:
@@ -67,7 +66,7 @@ async def _add(
             title=text.split('title = "')[1].split('"')[0],
             scenario=SCENARIO,
             text=text,
-            scenario_text=scenario.read_text(),
+            scenario_text=shipped_scenarios()[SCENARIO],
             craft="",
             who="Ada",
             state=state,
