@@ -206,7 +206,7 @@ class FaultDetector:
             if there and (mode != "disarmed" or ROBOT_FAULTS[name].always or name in active)
         }
         if "board_silent" in wrong and not self._line.connected:
-            wrong["board_silent"] = f"({self._line.text})"
+            wrong["board_silent"] = f"There is no connection: {self._line.text}."
         if "fin_failing" in wrong:
             # All since the alarm began: a loose part fails again and again.
             before = self._failing_fins if "fin_failing" in active else 0

@@ -89,6 +89,14 @@ def test_a_silent_board_is_not_reported_as_a_silent_imu_or_a_capsized_robot(rig:
     assert wrong(rig) == {"depth_stale", "board_silent"}
 
 
+def test_a_silent_board_says_what_the_line_waits_for(rig: SupervisorRig) -> None:
+    rig.clock.forward(ROBOT_FAULTS["board_silent"].limit)
+    assert rig.supervisor.detector.active_faults("automatic", [])["board_silent"] == ""
+    rig.board.connected, rig.board.text = False, "/dev/ttyS0 is missing"
+    detail = rig.supervisor.detector.active_faults("automatic", [])["board_silent"]
+    assert detail == "There is no connection: /dev/ttyS0 is missing."
+
+
 def test_a_frozen_pressure_is_one_that_repeats_often_and_long(rig: SupervisorRig) -> None:
     live(rig, 0.38, lambda: rig.sense(frozen=True))
     assert wrong(rig) == set()
