@@ -1,6 +1,7 @@
 """The whole robot as a person starts it: `mucat run` on a loopback port, with a data folder of its own."""
 
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -23,14 +24,17 @@ from tests.waiting import SECONDS
 
 ROOT = Path(__file__).resolve().parents[1]
 _POLL = 0.1
+_PORTS = range(20_000, 32_000)
+"""Below those that Linux gives to outgoing connections, which could take a port before the server does."""
 
 
 def free_port() -> int:
-    """Return a TCP port of the loopback that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
+    """Return a TCP port of the loopback that nobody uses, also while a server restarts."""
+    for port in random.sample(_PORTS, len(_PORTS)):
+        with socket.socket() as probe, suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+    raise AssertionError(f"all ports from {_PORTS.start} to {_PORTS.stop} are in use")
 
 
 class Stack:
