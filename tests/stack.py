@@ -29,7 +29,7 @@ _PORTS = range(20_000, 32_000)
 
 
 def free_port() -> int:
-    """Return a TCP port of the loopback that nobody uses, also while a server restarts."""
+    """Return a TCP port of the loopback that nobody uses; a server can restart on it."""
     for port in random.sample(_PORTS, len(_PORTS)):
         with socket.socket() as probe, suppress(OSError):
             probe.bind(("127.0.0.1", port))

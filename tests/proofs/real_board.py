@@ -23,7 +23,7 @@ DIALOUT = 20
 UNUSED = slice(0x64, 0x68)
 """The last entry of the ATmega328P's interrupt table (SPM_READY), which the firmware does not use."""
 MARK = bytes.fromhex("0c940000")
-"""What the later firmware has there: a jump to the start, where avr-gcc's default handler goes as well."""
+"""The entry of the later firmware: a jump to the start, where avr-gcc's default handler goes as well."""
 LINK = """
 print(*(one["state"] for one in ask(data, "GET", "/health")["parts"] if one["name"] == "link"))
 """

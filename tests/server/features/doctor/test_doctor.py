@@ -19,6 +19,7 @@ from server.features.doctor.machine import Machine, read_machine
 from server.platform.pidfile import PidFile
 from server.platform.schema import prepare
 from server.platform.settings import Settings
+from tests.stack import free_port
 
 NOBODY = 65534
 ROBOT = '[robot]\nmode = "robot"\n[link]\nport = "{port}"\nreset = "dtr"\n[server]\nport = {web}\n'
@@ -26,10 +27,7 @@ ROBOT = '[robot]\nmode = "robot"\n[link]\nport = "{port}"\nreset = "dtr"\n[serve
 
 @pytest.fixture
 def web() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        number: int = probe.getsockname()[1]
-        return number
+    return free_port()
 
 
 def doctor(settings: Settings, *more: str) -> int:

@@ -1,6 +1,5 @@
 """Sweeps on a scheduler of Dask with certificates: killed workers, a killed scheduler, wrong workers."""
 
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -17,6 +16,7 @@ from server.features.sweeps.engine import RunResult, SweepEngine
 from server.features.sweeps.run_task import WorkerIdentity, identify
 from server.features.sweeps.simulation import probe, simulate
 from tests.server.features.sweeps.sweep_rig import EIGHT, make_certificates, read, tasks_of, without_seconds
+from tests.stack import free_port
 
 SCHEDULER = """
 import asyncio, sys
@@ -74,10 +74,7 @@ class Cluster:
 
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[Cluster]:
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    made = Cluster(make_certificates(tmp_path / "tls"), f"tls://127.0.0.1:{port}")
+    made = Cluster(make_certificates(tmp_path / "tls"), f"tls://127.0.0.1:{free_port()}")
     with ExitStack() as ended:
         yield made
         for process in made.processes:
