@@ -8,7 +8,7 @@ and not of itself.
 
 import tempfile
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from math import ceil
 from pathlib import Path
 from threading import Lock, Semaphore
@@ -35,6 +35,8 @@ LOOP_TIME = 0.003
 PATIENCE = 0.05
 """s beyond what an answer takes on the line."""
 QUESTIONS = 3
+LOOK = 0.1
+"""s of real time"""
 
 
 class Runner:
@@ -70,6 +72,10 @@ class Runner:
         try:
             cells = [pool.submit(run_one, number, cell) for number, cell in enumerate(test.cells)]
             for cell in cells:
+                # The kernel may give a signal to any thread; Python's handler runs in the main one, which
+                # nothing wakes if it waits without end.
+                while not cell.done():
+                    wait([cell], LOOK)
                 yield cell.result()
         finally:
             pool.shutdown(cancel_futures=True)

@@ -1,5 +1,6 @@
 """The lab as a process, as the server starts it."""
 
+import ctypes
 import json
 import signal
 import subprocess
@@ -7,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
+from pathlib import Path
 from typing import IO, Any
 
 from robot_runtime.experiments.comm_test.document import CommTest
@@ -63,6 +65,21 @@ def cancel(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
     for _ in range(20):
         process.send_signal(signal.SIGTERM)
     return _rest(process)
+
+
+def cancel_by_other_threads(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:
+    """Like `cancel`, with signals that the kernel gives to all threads but the main one, as it may."""
+    others = {int(path.name) for path in Path(f"/proc/{process.pid}/task").iterdir()} - {process.pid}
+    assert others
+    for thread in others:
+        signal_thread(process.pid, thread)
+    return _rest(process)
+
+
+def signal_thread(process: int, thread: int) -> None:
+    """Send SIGTERM to one thread, tgkill(2)."""
+    if ctypes.CDLL(None, use_errno=True).tgkill(process, thread, signal.SIGTERM) != 0:
+        raise OSError(ctypes.get_errno(), "tgkill failed")
 
 
 def _rest(process: subprocess.Popen[bytes]) -> tuple[int, list[Event]]:

@@ -7,7 +7,14 @@ import pytest
 
 from robot_runtime.experiments.comm_test.builder import Builder
 from tests.runtime.experiments.comm_test.conftest import Run, make_test
-from tests.runtime.experiments.comm_test.lab_process import cancel, lab, read_until, run_lab, write_document
+from tests.runtime.experiments.comm_test.lab_process import (
+    cancel,
+    cancel_by_other_threads,
+    lab,
+    read_until,
+    run_lab,
+    write_document,
+)
 
 pytestmark = pytest.mark.usefixtures("program")
 EMULATED = ("--where", "emulated")
@@ -47,14 +54,15 @@ def test_bytes_that_are_no_text_are_refused() -> None:
     assert event["problems"][0].startswith("the document has a byte in line 1 that is not UTF-8")
 
 
-def test_cancelled_in_the_middle_of_a_long_cell() -> None:
-    # Its second cell is more than an hour of emulated time.
-    slow = make_test(delay=(0.0, 10.0), to_val=1001, expected=1000)
+@pytest.mark.parametrize("thread", ["main", "other"])
+def test_cancelled_in_the_middle_of_a_long_cell(thread: str) -> None:
+    # More than two hours of emulated time, a minute and more to compute.
+    slow = make_test(delay=(10.0,), to_val=1001, expected=1000)
     with lab(write_document(slow, make_test()), *EMULATED) as process:
-        read_until(process.stdout, event="cell", number=0)
-        status, events = cancel(process)
+        read_until(process.stdout, phase="run")
+        status, events = cancel(process) if thread == "main" else cancel_by_other_threads(process)
     assert status == 1
-    assert events[-1] == {"event": "ended", "test": 0, "state": "cancelled", "problem": ""}
+    assert events == [{"event": "ended", "test": 0, "state": "cancelled", "problem": ""}]
 
 
 def test_without_the_emulated_board_the_remedy_is_named(tmp_path: Path) -> None:
