@@ -1,13 +1,14 @@
 """Time of a seek in a replay of one hour."""
 
 import random
+import re
 import tempfile
 import time
 from pathlib import Path
 from statistics import quantiles
 
 import httpx
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, expect, sync_playwright
 
 from bench.hour import SECONDS, copy_hours
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
@@ -18,7 +19,21 @@ _PAGE_SEEKS = 50
 _AHEAD = 5.0
 _HISTORY = 300.0
 """s after and before the moment, as the page asks for them."""
-_SLIDER = "Time since the start of the session"
+_PATIENCE_MS = 10_000
+_DRAG = f"""(slider, [share, line]) => new Promise((resolve, reject) => {{
+    const log = document.querySelector('[role="log"]');
+    const {{ left, width }} = slider.getBoundingClientRect();
+    const began = performance.now();
+    const look = () => {{
+        const took = performance.now() - began;
+        if (log.textContent.trim().endsWith(line)) resolve(took);
+        else if (took > {_PATIENCE_MS}) reject(new Error(`“${{line}}” is not the last line`));
+        else requestAnimationFrame(look);
+    }};
+    slider.dispatchEvent(new PointerEvent('pointermove', {{ bubbles: true, clientX: left + share * width }}));
+    look();
+}})"""
+"""Drags the pressed slider to this share of the dive; returns the ms until the console ends with the line."""
 
 
 def measure() -> dict[str, float]:
@@ -58,28 +73,22 @@ def _seek(api: httpx.Client, session: int) -> list[float]:
 
 
 def _seek_in(page: Page) -> list[float]:
-    """Return the ms of a seek; the dive's console has a line every five seconds, which shows the moment."""
+    """Return the ms of a seek; the dive's console has a line every five seconds, which shows the moment.
+
+    Raise Error of Playwright where the page does not show it.
+    """
     chance = random.Random(2)
-    page.get_by_label(_SLIDER).wait_for()
-    delays = []
+    slider = page.get_by_role("slider", name="Time since the start of the session")
+    # The depth profile, which takes the place of a bare line.
+    expect(slider).to_have_attribute("aria-valuetext", re.compile(" m$"))
+    box = slider.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"], box["y"] + box["height"] / 2)
+    page.mouse.down()
+    delays: list[float] = []
     for _ in range(_PAGE_SEEKS):
         number = chance.randrange(20, 700)
-        delays.append(
-            page.evaluate(
-                """([label, to, line]) => new Promise((resolve) => {
-                    const slider = document.querySelector(`[aria-label="${label}"]`);
-                    const log = document.querySelector('[role="log"]');
-                    const began = performance.now();
-                    const look = () => {
-                        const there = log.textContent.trim().endsWith(line);
-                        if (there) resolve(performance.now() - began);
-                        else requestAnimationFrame(look);
-                    };
-                    slider.value = to;
-                    slider.dispatchEvent(new Event('input', { bubbles: true }));
-                    look();
-                })""",
-                [_SLIDER, 5 * number + 3, f"pass {5 * number + 0.5:.0f}: all well"],
-            )
-        )
+        share = (5 * number + 3) / SECONDS
+        delays.append(slider.evaluate(_DRAG, [share, f"pass {5 * number + 0.5:.0f}: all well"]))
+    page.mouse.up()
     return delays
