@@ -160,6 +160,11 @@ class ModeCommand(RobotCommand):
 
     mode: Piloting = field(metadata={"description": "who steers: controller or pilot"})
 
+    @property
+    def label(self) -> str:
+        """The command in a few words, for a person."""
+        return f"Mode: {self.mode}"
+
 
 @command("check_fins", Need.CONTROL)
 class CheckFinsCommand(RobotCommand):

@@ -4,6 +4,7 @@ from importlib.resources import files
 
 import pytest
 
+from robot_runtime.contract.commands import summary
 from robot_runtime.contract.limits import ConfigError
 from robot_runtime.contract.vision_settings import COLOURS
 from robot_runtime.experiments.scenario.document import read_scenario
@@ -130,6 +131,9 @@ def test_every_entry_is_parsed() -> None:
     assert scenario.control.gains == {"pid": {"kp": 4.0}}
     assert {event.do for event in scenario.events} == EVENTS.keys() == ALL_EVENTS.keys()
     assert all(event.label for event in scenario.events)
+    # A list of what happens says it in a few words, not as the manual does.
+    commands = [event.command for event in scenario.events if isinstance(event, CommandEvent)]
+    assert [command.label for command in commands if command.label == summary(type(command))] == []
 
 
 def test_mistakes_of_the_board_are_checked_by_name() -> None:
