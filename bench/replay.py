@@ -1,17 +1,17 @@
 """Time of a seek in a replay of one hour."""
 
 import random
-import re
 import tempfile
 import time
 from pathlib import Path
 from statistics import quantiles
 
 import httpx
-from playwright.sync_api import Page, expect, sync_playwright
+from playwright.sync_api import Page, sync_playwright
 
 from bench.hour import SECONDS, copy_hours
 from tests.browser.chromium import ARGUMENTS, EXECUTABLE, sign_in
+from tests.browser.replaying import press_depth_slider
 from tests.stack import Stack
 
 _SEEKS = 200
@@ -78,13 +78,7 @@ def _seek_in(page: Page) -> list[float]:
     Raise Error of Playwright where the page does not show it.
     """
     chance = random.Random(2)
-    slider = page.get_by_role("slider", name="Time since the start of the session")
-    # The depth profile, which takes the place of a bare line.
-    expect(slider).to_have_attribute("aria-valuetext", re.compile(" m$"))
-    box = slider.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"], box["y"] + box["height"] / 2)
-    page.mouse.down()
+    slider = press_depth_slider(page)
     delays: list[float] = []
     for _ in range(_PAGE_SEEKS):
         number = chance.randrange(20, 700)

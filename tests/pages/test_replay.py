@@ -4,6 +4,7 @@ import re
 
 from playwright.sync_api import Page, expect
 
+from tests.browser.replaying import press_depth_slider
 from tests.browser.site import Site
 from tests.waiting import wait_for
 
@@ -36,12 +37,7 @@ def test_a_drag_of_the_slider_seldom_writes_the_address(page: Page, site: Site) 
     wait_for(lambda: site.api.get(address).json()["duration"] > 2, "two seconds of the recording")
     site.api.post(f"{address}/stop").raise_for_status()
     page.goto(f"{site.url}/#/replay/{session}")
-    slider = page.get_by_role("slider", name="Time since the start of the session")
-    expect(slider).to_have_attribute("aria-valuetext", re.compile(" m$"))
-    box = slider.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"], box["y"] + box["height"] / 2)
-    page.mouse.down()
+    slider = press_depth_slider(page)
     written, took = slider.evaluate(DRAG)
     # The press has written it, perhaps longer ago.
     assert written <= 1 + took / WRITE_AFTER + 1

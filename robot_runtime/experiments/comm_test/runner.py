@@ -36,7 +36,7 @@ PATIENCE = 0.05
 """s beyond what an answer takes on the line."""
 QUESTIONS = 3
 LOOK = 0.1
-"""s of real time"""
+"""s of real time between two looks whether a cell is done."""
 
 
 class Runner:
